@@ -33,6 +33,7 @@ CASES = [
     "generalized_vortex",
     "patch_test",
     "loaded_surface",
+    "rigid_bodies",
     "rigid_motion",
     "sliding_block",
     "colliding_disks",

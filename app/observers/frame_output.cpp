@@ -5,7 +5,10 @@
 namespace talus {
 
 FrameOutput::FrameOutput(const std::filesystem::path& folder, const std::string& made_by)
-    : made_by_(made_by), particle_series_(folder / "particles.pvd", made_by), mesh_series_(folder / "mesh.pvd", made_by), rigid_series_(folder / "rigid.pvd", made_by)
+    : made_by_(made_by),
+      particle_series_(folder / "particles.pvd", made_by),
+      mesh_series_(folder / "mesh.pvd", made_by),
+      rigid_series_(folder / "rigid.pvd", made_by)
 {}
 
 void FrameOutput::write(Communicator& ranks, Frame frame)

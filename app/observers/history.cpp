@@ -71,9 +71,9 @@ struct ContactNow {
 template <int D>
 struct RigidNow {
   const RigidState<D>& state;
-  Vec<D> force;             ///< of material on it [N]
-  Vec3 moment;              ///< about its centre [N m]
-  Real kinetic, friction;   ///< [J]
+  Vec<D> force;            ///< of material on it [N]
+  Vec3 moment;             ///< about its centre [N m]
+  Real kinetic, friction;  ///< [J]
 };
 template <int D>
 struct PointNow {

@@ -31,15 +31,15 @@ struct HistoryState {
   std::vector<Vec<D>> impulse;         ///< impulse of each wall at the previous row [N s]
   std::vector<Vec3> angular;           ///< moment of this impulse about the origin [N m s]
   std::vector<Vec<D>> contact;         ///< impulse of each contact at the previous row [N s]
-  std::vector<RigidSums<D>> rigid;      ///< of each rigid body at the previous row
+  std::vector<RigidSums<D>> rigid;     ///< of each rigid body at the previous row
   std::vector<BodyImpulse<D>> given;   ///< impulse on each body of the history at the previous row
   Real time = 0;                       ///< time of the previous row [s]
   static constexpr auto fields()
   {
     return std::tuple{saved("followed", &HistoryState::followed), saved("impulse", &HistoryState::impulse),
                       saved("angular", &HistoryState::angular),   saved("contact", &HistoryState::contact),
-                      saved("rigid", &HistoryState::rigid),
-                      saved("given", &HistoryState::given),       saved("time", &HistoryState::time)};
+                      saved("rigid", &HistoryState::rigid),       saved("given", &HistoryState::given),
+                      saved("time", &HistoryState::time)};
   }
 };
 

@@ -133,7 +133,7 @@ class Recorder {
   HistoryState<D> history_state_;  // state of history_ at its last row
   FrameOutput frames_;
   int particle_files_ = 0, mesh_files_ = 0;
-  bool has_rigid_ = false;  // whether the scene has rigid bodies
+  bool has_rigid_ = false;                                        // whether the scene has rigid bodies
   Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // times of the last files or rows [s]
   Real stage_start_ = 0, done_before_ = 0;
   RanksSummary ranks_;

@@ -236,13 +236,16 @@ void check_rigid_places(const Scene& scene, Communicator& ranks, const Setup<D>&
       for (Index row = body.begin; row < body.end; ++row) {
         const Vec<D>& x = state.particles.x[static_cast<std::size_t>(row)];
         const Real radius = rigid.bodies[r].shape->radius();
-        inside += (x - state.rigid[r].x).squaredNorm() < radius * radius && state.rigid[r].distance(*rigid.bodies[r].shape, x).distance < 0 ? 1 : 0;
+        inside += (x - state.rigid[r].x).squaredNorm() < radius * radius && state.rigid[r].distance(*rigid.bodies[r].shape, x).distance < 0
+                      ? 1
+                      : 0;
       }
       if (inside = ranks.sum(inside); inside > 0)
-        errors.add(where, "name",
-                   fmt::format("{} particle{} of \"{}\" begin{} inside \"{}\": move one of them, or cut it out of the other by a shape of type "
-                               "difference",
-                               inside, inside == 1 ? "" : "s", body.name, inside == 1 ? "s" : "", rigid.bodies[r].name));
+        errors.add(
+            where, "name",
+            fmt::format("{} particle{} of \"{}\" begin{} inside \"{}\": move one of them, or cut it out of the other by a shape of type "
+                        "difference",
+                        inside, inside == 1 ? "" : "s", body.name, inside == 1 ? "s" : "", rigid.bodies[r].name));
     }
   }
   constexpr Real seen = 1e-3;  // of the radius
@@ -252,7 +255,8 @@ void check_rigid_places(const Scene& scene, Communicator& ranks, const Setup<D>&
     if (at.gap > -seen * rigid.bodies[first].shape->radius() || !known.insert({at.first, at.second}).second)
       continue;
     if (at.second == none)
-      errors.add(scene.rigid[first].where, "name", fmt::format("\"{}\" begins {:.3g} m inside a wall of the mesh", rigid.bodies[first].name, -at.gap));
+      errors.add(scene.rigid[first].where, "name",
+                 fmt::format("\"{}\" begins {:.3g} m inside a wall of the mesh", rigid.bodies[first].name, -at.gap));
     else
       errors.add(scene.rigid[static_cast<std::size_t>(at.second)].where, "name",
                  fmt::format("\"{}\" begins {:.3g} m inside \"{}\"", rigid.bodies[static_cast<std::size_t>(at.second)].name, -at.gap,

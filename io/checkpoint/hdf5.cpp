@@ -21,10 +21,7 @@ namespace {
 
 }  // namespace
 
-void keep_quiet() noexcept
-{
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
+void keep_quiet() noexcept { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 std::string last_words()
 {

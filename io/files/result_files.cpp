@@ -25,8 +25,8 @@ bool is_map(std::string_view name) noexcept
 
 bool is_written_by_runs(std::string_view name) noexcept
 {
-  static constexpr std::array<std::string_view, 10> names{"summary.json", "history.csv", "runout.csv", "particles.pvd", "mesh.pvd", "rigid.pvd",
-                                                         "mesh.msh",     "mesh.vtu",    "scene.yaml", initial_file};
+  static constexpr std::array<std::string_view, 10> names{"summary.json", "history.csv", "runout.csv", "particles.pvd", "mesh.pvd",
+                                                          "rigid.pvd",    "mesh.msh",    "mesh.vtu",   "scene.yaml",    initial_file};
   const std::size_t slash = name.find('/');
   if (slash == std::string_view::npos)
     return std::ranges::find(names, name) != names.end() || is_numbered(name, "particles_", ".vtp") || is_numbered(name, "mesh_", ".vtu") ||

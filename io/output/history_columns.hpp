@@ -65,17 +65,17 @@ constexpr auto contact_columns()
 constexpr auto rigid_columns()
 {
   using enum QuantityKind;
-  return std::tuple{
-      quantity<vector>("rigid_{}_", "m", "its centre of mass", [](const auto& rigid) { return rigid.state.x; }),
-      quantity<vector>("rigid_{}_v", "m/s", "velocity of the centre", [](const auto& rigid) { return rigid.state.v; }),
-      quantity<moment>("rigid_{}_w", "rad/s", "angular velocity", [](const auto& rigid) { return rigid.state.spin; }),
-      quantity<vector>("rigid_{}_f", "N", "mean force of material on it since the row before", [](const auto& rigid) { return rigid.force; }),
-      quantity<moment>("rigid_{}_m", "N m", "mean moment of these forces about its centre since the row before",
-                       [](const auto& rigid) { return rigid.moment; }),
-      quantity<number>("kinetic_rigid_{}", "J", "its kinetic energy, no part of that of all particles",
-                       [](const auto& rigid) { return rigid.kinetic; }),
-      quantity<number>("friction_rigid_{}", "J", "energy lost by friction between it and material",
-                       [](const auto& rigid) { return rigid.friction; })};
+  return std::tuple{quantity<vector>("rigid_{}_", "m", "its centre of mass", [](const auto& rigid) { return rigid.state.x; }),
+                    quantity<vector>("rigid_{}_v", "m/s", "velocity of the centre", [](const auto& rigid) { return rigid.state.v; }),
+                    quantity<moment>("rigid_{}_w", "rad/s", "angular velocity", [](const auto& rigid) { return rigid.state.spin; }),
+                    quantity<vector>("rigid_{}_f", "N", "mean force of material on it since the row before",
+                                     [](const auto& rigid) { return rigid.force; }),
+                    quantity<moment>("rigid_{}_m", "N m", "mean moment of these forces about its centre since the row before",
+                                     [](const auto& rigid) { return rigid.moment; }),
+                    quantity<number>("kinetic_rigid_{}", "J", "its kinetic energy, no part of that of all particles",
+                                     [](const auto& rigid) { return rigid.kinetic; }),
+                    quantity<number>("friction_rigid_{}", "J", "energy lost by friction between it and material",
+                                     [](const auto& rigid) { return rigid.friction; })};
 }
 
 constexpr auto point_columns()

@@ -20,7 +20,7 @@ namespace talus::render {
 namespace {
 
 constexpr Colour steel{128, 136, 148};
-constexpr Real darkest_side = 0.45;       // brightness of what faces away from the light
+constexpr Real darkest_side = 0.45;      // brightness of what faces away from the light
 constexpr Real sharp_edge_of_body = 40;  // angle [degrees] between facets above which their normals are not averaged
 
 vtkSmartPointer<vtkPolyData> surface_of_bodies(const Picture& picture)

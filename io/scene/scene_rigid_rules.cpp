@@ -43,7 +43,8 @@ class RigidRules : private SceneRuleBase {
       fits(path + ".velocity", rigid.velocity);
       for (const auto& [key, list] : {std::pair{".inertia", &rigid.inertia}, std::pair{".angular_velocity", &rigid.angular_velocity}})
         if (scene_.dimension != 0 && !list->empty() && list->size() != axes)
-          add(path + key, fmt::format("needs {} value{} in {} dimensions, not {}", axes, axes == 1 ? "" : "s", scene_.dimension, list->size()));
+          add(path + key,
+              fmt::format("needs {} value{} in {} dimensions, not {}", axes, axes == 1 ? "" : "s", scene_.dimension, list->size()));
     }
     if (!scene_.rigid.empty())
       for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)

@@ -75,7 +75,9 @@ std::vector<std::array<Index, D>> prepared(std::vector<Vec<D>>& corners, std::ve
 
 template <int D>
 FacetSurface<D>::FacetSurface(Corners corners, Facets facets)
-    : corners_(std::move(corners)), facets_(prepared<D>(corners_, std::move(facets))), tree_(static_cast<Index>(facets_.size()), [this](Index f) {
+    : corners_(std::move(corners)),
+      facets_(prepared<D>(corners_, std::move(facets))),
+      tree_(static_cast<Index>(facets_.size()), [this](Index f) {
         Extent<D> box;
         for (const Vec<D>& corner : corners_of(static_cast<std::size_t>(f)))
           box.take(corner);

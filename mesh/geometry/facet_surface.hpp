@@ -50,6 +50,7 @@ class FacetSurface {
 
   const Corners& corners() const noexcept { return corners_; }
   const Facets& facets() const noexcept { return facets_; }
+
  private:
   struct Nearest {
     Vec<D> place;

@@ -27,8 +27,7 @@ enum class MessageTag : int {
   contact_reach = 12,
   surfaces = 13,
   rigid_nodes = 14,
-  rigid_cells = 15,
-  rigid_gaps = 16
+  rigid_touches = 15
 };
 
 /// Selects the parts of a row to be sent: the whole row.

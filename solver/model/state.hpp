@@ -114,11 +114,11 @@ struct State {
 
   static constexpr auto parts()
   {
-    return std::tuple{saved("clock", &State::clock),     saved("stage", &State::stage),        saved("energy", &State::energy),
-                      saved("mass", &State::mass),       saved("momentum", &State::momentum),  saved("watched", &State::monitor),
-                      saved("timings", &State::timings), saved("residual", &State::residual),  saved("crossing", &State::crossing),
-                      saved("walls", &State::boundary),  saved("contacts", &State::contacts),  saved("rigid", &State::rigid),
-                      saved("bodies", &State::bodies),   saved("laws", &State::materials),  saved("particles", &State::particles)};
+    return std::tuple{saved("clock", &State::clock),     saved("stage", &State::stage),       saved("energy", &State::energy),
+                      saved("mass", &State::mass),       saved("momentum", &State::momentum), saved("watched", &State::monitor),
+                      saved("timings", &State::timings), saved("residual", &State::residual), saved("crossing", &State::crossing),
+                      saved("walls", &State::boundary),  saved("contacts", &State::contacts), saved("rigid", &State::rigid),
+                      saved("bodies", &State::bodies),   saved("laws", &State::materials),    saved("particles", &State::particles)};
   }
 };
 

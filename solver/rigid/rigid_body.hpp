@@ -46,8 +46,8 @@ class RigidShape {
   }
   bool is_ball() const noexcept { return std::holds_alternative<Ball>(surface_); }
   const FacetSurface<D>* facets() const noexcept { return std::get_if<FacetSurface<D>>(&surface_); }
-  Real radius() const noexcept { return radius_; }                                     ///< of the ball around the centre that holds it [m]
-  const std::vector<Vec<D>>& samples() const noexcept { return samples_; }             ///< points of facets
+  Real radius() const noexcept { return radius_; }                          ///< of the ball around the centre that holds it [m]
+  const std::vector<Vec<D>>& samples() const noexcept { return samples_; }  ///< points of facets
 
  private:
   struct Ball {
@@ -70,9 +70,9 @@ template <int D>
 struct RigidBody {
   std::string name;
   std::shared_ptr<const RigidShape<D>> shape;
-  Real mass{};                   ///< [kg], of unit thickness in 2-D
-  Mat3 inertia = Mat3::Zero();   ///< about its centre, in the axes of the scene at the start [kg m^2]
-  Real friction{};               ///< Coulomb's coefficient with all that it touches [-]
+  Real mass{};                           ///< [kg], of unit thickness in 2-D
+  Mat3 inertia = Mat3::Zero();           ///< about its centre, in the axes of the scene at the start [kg m^2]
+  Real friction{};                       ///< Coulomb's coefficient with all that it touches [-]
   std::optional<RigidMotion<D>> motion;  ///< nothing: it moves freely
   bool is_free() const noexcept { return !motion; }
 };
@@ -80,10 +80,10 @@ struct RigidBody {
 /// Place and motion of a rigid body, and what it has done since the start of the run.
 template <int D>
 struct RigidState {
-  Vec<D> x = Vec<D>::Zero();      ///< its centre of mass [m]
-  Mat3 turn = Mat3::Identity();   ///< its rotation since the start
-  Vec<D> v = Vec<D>::Zero();      ///< of the centre [m/s]; half a step behind places, as velocities of particles are
-  Vec3 spin = Vec3::Zero();       ///< angular velocity [rad/s]
+  Vec<D> x = Vec<D>::Zero();     ///< its centre of mass [m]
+  Mat3 turn = Mat3::Identity();  ///< its rotation since the start
+  Vec<D> v = Vec<D>::Zero();     ///< of the centre [m/s]; half a step behind places, as velocities of particles are
+  Vec3 spin = Vec3::Zero();      ///< angular velocity [rad/s]
   RigidSums<D> done;
   static constexpr auto fields()
   {
@@ -93,10 +93,7 @@ struct RigidState {
 
   /// The velocity that it has at a place [m/s].
   Vec<D> velocity_at(const Vec<D>& place) const noexcept { return v + turned_arm<D>(spin, place - x); }
-  Vec<D> arm_in_body(const Vec<D>& place) const noexcept
-  {
-    return turn.template topLeftCorner<D, D>().transpose() * (place - x);
-  }
+  Vec<D> arm_in_body(const Vec<D>& place) const noexcept { return turn.template topLeftCorner<D, D>().transpose() * (place - x); }
   Vec<D> in_scene(const Vec<D>& along) const noexcept { return turn.template topLeftCorner<D, D>() * along; }
   SurfaceDistance<D> distance(const RigidShape<D>& shape, const Vec<D>& place) const
   {

@@ -13,9 +13,9 @@ namespace {
 template <int D>
 inline constexpr std::size_t most_points = D == 2 ? 2 : 6;
 constexpr int most_turns = 200;
-constexpr Real settled = 1e-12;       ///< change of the impulses in a turn, relative to the largest, at which turns end
-constexpr Real share_parted = 0.2;    ///< of an overlap, in a step
-constexpr Real overlap_left = 1e-5;   ///< that is left alone, relative to the radius
+constexpr Real settled = 1e-12;      ///< change of the impulses in a turn, relative to the largest, at which turns end
+constexpr Real share_parted = 0.2;   ///< of an overlap, in a step
+constexpr Real overlap_left = 1e-5;  ///< that is left alone, relative to the radius
 
 /// The deepest point and those farthest from all chosen before: a body on a face is held by the rim of the face.
 template <int D>
@@ -114,7 +114,8 @@ std::vector<RigidContact<D>> find_contacts(const RigidScene<D>& scene, std::span
     const RigidShape<D>& shape = *body.shape;
     if (body.is_free())
       for (const RigidWall<D>& wall : scene.walls)
-        take(points_near<D>(shape, states[a], reach(a), [&](const Vec<D>& x) { return wall.surface.distance(x); }), a, none, body.friction, 1);
+        take(points_near<D>(shape, states[a], reach(a), [&](const Vec<D>& x) { return wall.surface.distance(x); }), a, none, body.friction,
+             1);
     for (std::size_t b = a + 1; b < states.size(); ++b) {
       const RigidBody<D>& other = scene.bodies[b];
       if (!body.is_free() && !other.is_free())
@@ -194,8 +195,8 @@ void act_on_contacts(const RigidScene<D>& scene, Real dt, std::span<RigidContact
   }
 }
 
-#define TALUS_INSTANTIATE(D)                                                                                                          \
-  template std::vector<RigidContact<D>> find_contacts(const RigidScene<D>&, std::span<const RigidState<D>>, Real);                   \
+#define TALUS_INSTANTIATE(D)                                                                                       \
+  template std::vector<RigidContact<D>> find_contacts(const RigidScene<D>&, std::span<const RigidState<D>>, Real); \
   template void act_on_contacts(const RigidScene<D>&, Real, std::span<RigidContact<D>>, std::span<RigidState<D>>);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)

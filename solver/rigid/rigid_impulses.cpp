@@ -62,7 +62,7 @@ TwistSlope<D> inertia_of(const RigidBody<D>& body, const RigidState<D>& state)
 /// A mass at a node beside a rigid body.
 template <int D>
 struct Mass {
-  Vec<D> v;                        ///< [m/s]
+  Vec<D> v;                          ///< [m/s]
   Real along_normal, along_tangent;  ///< what resists an impulse [kg]; infinite where a boundary condition holds it
 };
 
@@ -125,9 +125,8 @@ constexpr Real tolerance = 1e-11;  ///< of the momentum that remains, relative t
 }  // namespace
 
 template <int D>
-void RigidNodes<D>::act(const Kick& kick, const Mesh<D>& mesh, Communicator& ranks, const RigidScene<D>& scene,
-                        BoundaryConditions<D>& conditions, std::span<RigidState<D>> states, std::span<VelocityField<D>> fields,
-                        ExactSums<BoundaryWork>& work)
+void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<D>& scene, BoundaryConditions<D>& conditions,
+                        std::span<RigidState<D>> states, std::span<VelocityField<D>> fields, ExactSums<BoundaryWork>& work)
 {
   std::size_t begin = 0;
   for (std::size_t r = 0; r < n_bodies_; ++r) {
@@ -142,14 +141,15 @@ void RigidNodes<D>::act(const Kick& kick, const Mesh<D>& mesh, Communicator& ran
     for (const RigidNode<D>& at : touching) {
       const Nodes<D>& nodes = fields[static_cast<std::size_t>(at.field)].nodes;
       const auto n = static_cast<std::size_t>(at.node);
-      const Vec<D> v = nodes.motion[n].v, relative = v - state.velocity_at(mesh.node(at.node));
-      const Vec<D> sliding = relative - relative.dot(at.normal) * at.normal;
+      const Vec<D> v = nodes.motion[n].v, relative = v - state.velocity_at(at.touch.place);
+      const Vec<D> sliding = relative - relative.dot(at.touch.normal) * at.touch.normal;
       const auto along = [&](const Vec<D>& push) { return resistance(conditions, at.node, kick.to, nodes.sum[n].mass, v, push); };
-      masses.push_back({v, along(at.normal * std::max(relative.norm(), Real{1e-12})), along(-sliding)});
+      masses.push_back({v, along(at.touch.normal * std::max(relative.norm(), Real{1e-12})), along(-sliding)});
     }
     const auto by_node = [&](std::size_t k, const Twist<D>& q) {
-      const Vec<D> arm = mesh.node(touching[k].node) - state.x;
-      return impulse_of<D>(masses[k], touching[k].normal, body.friction, q.template head<D>() + turned_arm<D>(angular_part<D>(q), arm));
+      const Vec<D> arm = touching[k].touch.place - state.x;
+      return impulse_of<D>(masses[k], touching[k].touch.normal, body.friction,
+                           q.template head<D>() + turned_arm<D>(angular_part<D>(q), arm));
     };
 
     const Twist<D> before = twist<D>(state.v, state.spin);
@@ -164,7 +164,7 @@ void RigidNodes<D>::act(const Kick& kick, const Mesh<D>& mesh, Communicator& ran
           const Impulse<D> by = by_node(k, to);
           if (by.pressed.isZero(0))
             continue;
-          const auto arm = at_arm<D>(mesh.node(touching[k].node) - state.x);
+          const auto arm = at_arm<D>(touching[k].touch.place - state.x);
           Response<D> one;
           Eigen::Map<Twist<D>>(one.impulse.data()) = arm.transpose() * (by.pressed + by.rubbed);
           Eigen::Map<TwistSlope<D>>(one.slope.data()) = arm.transpose() * by.slope * arm;
@@ -209,7 +209,7 @@ void RigidNodes<D>::act(const Kick& kick, const Mesh<D>& mesh, Communicator& ran
 }
 
 template <int D>
-void RigidNodes<D>::hold(Real time, const Mesh<D>& mesh, const BoundaryConditions<D>& conditions, std::span<const RigidState<D>> states,
+void RigidNodes<D>::hold(Real time, const BoundaryConditions<D>& conditions, std::span<const RigidState<D>> states,
                          std::span<VelocityField<D>> fields) const
 {
   for (const RigidNode<D>& at : nodes_) {
@@ -220,9 +220,9 @@ void RigidNodes<D>::hold(Real time, const Mesh<D>& mesh, const BoundaryCondition
       remapped.v = remapped.change;
       continue;
     }
-    const Vec<D> u = states[static_cast<std::size_t>(at.rigid)].velocity_at(mesh.node(at.node)), relative = remapped.v - u;
-    if (const Real approach = -relative.dot(at.normal); approach > 0)
-      remapped.v = conditions.held(at.node, time, at.sticks ? u : Vec<D>(remapped.v + approach * at.normal));
+    const Vec<D> u = states[static_cast<std::size_t>(at.rigid)].velocity_at(at.touch.place), relative = remapped.v - u;
+    if (const Real approach = -relative.dot(at.touch.normal); approach > 0)
+      remapped.v = conditions.held(at.node, time, at.sticks ? u : Vec<D>(remapped.v + approach * at.touch.normal));
   }
 }
 
@@ -235,18 +235,19 @@ void RigidNodes<D>::add_sums(const Mesh<D>& mesh, std::span<const RigidState<D>>
       continue;
     const RigidState<D>& state = states[static_cast<std::size_t>(at.rigid)];
     const NodeMotion<D>& motion = fields[static_cast<std::size_t>(at.field)].nodes.motion[static_cast<std::size_t>(at.node)];
-    const Vec<D> u = state.velocity_at(mesh.node(at.node)), relative = motion.v - 0.5 * motion.change - u, impulse = at.pressed + at.rubbed;
-    sums[static_cast<std::size_t>(at.rigid)].add({impulse, moment<D>(mesh.node(at.node), impulse), moment<D>(mesh.node(at.node) - state.x, impulse),
-                                                  impulse.dot(u), at.pressed.dot(relative), at.rubbed.dot(relative)});
+    const Vec<D> u = state.velocity_at(at.touch.place), relative = motion.v - 0.5 * motion.change - u, impulse = at.pressed + at.rubbed;
+    sums[static_cast<std::size_t>(at.rigid)].add({impulse, moment<D>(mesh.node(at.node), impulse),
+                                                  moment<D>(at.touch.place - state.x, impulse), impulse.dot(u), at.pressed.dot(relative),
+                                                  at.rubbed.dot(relative)});
   }
 }
 
-#define TALUS_INSTANTIATE(D)                                                                                                             \
-  template void RigidNodes<D>::act(const Kick&, const Mesh<D>&, Communicator&, const RigidScene<D>&, BoundaryConditions<D>&,             \
-                                   std::span<RigidState<D>>, std::span<VelocityField<D>>, ExactSums<BoundaryWork>&);                     \
-  template void RigidNodes<D>::hold(Real, const Mesh<D>&, const BoundaryConditions<D>&, std::span<const RigidState<D>>,                  \
-                                    std::span<VelocityField<D>>) const;                                                                  \
-  template void RigidNodes<D>::add_sums(const Mesh<D>&, std::span<const RigidState<D>>, std::span<const VelocityField<D>>,               \
+#define TALUS_INSTANTIATE(D)                                                                                                           \
+  template void RigidNodes<D>::act(const Kick&, Communicator&, const RigidScene<D>&, BoundaryConditions<D>&, std::span<RigidState<D>>, \
+                                   std::span<VelocityField<D>>, ExactSums<BoundaryWork>&);                                             \
+  template void RigidNodes<D>::hold(Real, const BoundaryConditions<D>&, std::span<const RigidState<D>>, std::span<VelocityField<D>>)   \
+      const;                                                                                                                           \
+  template void RigidNodes<D>::add_sums(const Mesh<D>&, std::span<const RigidState<D>>, std::span<const VelocityField<D>>,             \
                                         std::span<ExactSums<RigidSums<D>>>) const;
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)

@@ -1,7 +1,5 @@
 #include "solver/rigid/rigid_nodes.hpp"
 
-#include <limits>
-
 #include "solver/strips/particles_in_cell.hpp"
 
 namespace talus {
@@ -10,15 +8,6 @@ namespace {
 
 /// Candidates are nodes nearer than this to a body, in mean edges: particles within two rings may touch it.
 constexpr Real nearness = 3;
-
-constexpr Real nowhere = std::numeric_limits<Real>::infinity();
-
-/// Selects gaps that particles have.
-struct Gaps {
-  static auto parts(auto& gap) noexcept { return std::tie(gap); }
-  static bool is_there(Real gap, Index) noexcept { return gap < nowhere; }
-  static void clear(Real& gap) noexcept { gap = nowhere; }
-};
 
 /// Half the width of a particle along a unit vector [m]: the stretched half side of a cube of its initial volume.
 template <int D>
@@ -40,14 +29,11 @@ void RigidNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Commu
   bodies_of_field_ = bodies_of_field;
   const auto n_nodes = static_cast<std::size_t>(mesh.n_nodes()), n_cells = static_cast<std::size_t>(mesh.n_cells());
   candidate_.assign(n_nodes, 0);
-  normal_.assign(n_nodes, Vec<D>::Zero());
-  gap_.assign(n_nodes, nowhere);
-  of_cell_.assign(n_cells, {});
+  touch_.assign(n_nodes, {});
   place_of_cell_.assign(n_cells, none);
   if (subdomain.alone())
     return;
   copies_ = copies_of_nodes(ranks, subdomain, MessageTag::rigid_nodes, std::vector<std::uint8_t>(n_nodes, 1));
-  cells_ = copies_of_cells(ranks, subdomain, MessageTag::rigid_cells, mesh.n_cells());
   std::vector<NeighbourRank> borders;
   staged_.clear();
   for (const NeighbourRank& border : copies_.borders()) {
@@ -57,8 +43,8 @@ void RigidNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Commu
       staged_.push_back(n);
     }
   }
-  back_ = HaloExchange(ranks, MessageTag::rigid_gaps, std::move(borders));
-  gap_of_others_.assign(staged_.size(), nowhere);
+  back_ = HaloExchange(ranks, MessageTag::rigid_touches, std::move(borders));
+  touch_of_others_.assign(staged_.size(), {});
 }
 
 template <int D>
@@ -75,7 +61,7 @@ void RigidNodes<D>::find_candidates(const Place& at, Index field, const Nodes<D>
     if ((at.mesh.node(n) - at.state.x).squaredNorm() > reach * reach || at.state.distance(at.shape, at.mesh.node(n)).distance > near)
       return;
     candidate_[i] = 1;
-    nodes_.push_back({.rigid = at.rigid, .field = field, .node = n});
+    nodes_.push_back({.rigid = at.rigid, .field = field, .node = n, .touch = {}});
   });
   copies_.send(candidate_, OfMarked{itself, candidate_});
   copies_.take(candidate_, OfMarked{itself, candidate_});
@@ -85,10 +71,10 @@ void RigidNodes<D>::find_candidates(const Place& at, Index field, const Nodes<D>
 }
 
 template <int D>
-void RigidNodes<D>::find_probes(const Place& at, Index field)
+void RigidNodes<D>::find_touching_particles(const Place& at, Index field)
 {
   for (const Index c : marked_)
-    of_cell_[static_cast<std::size_t>(c)] = {}, place_of_cell_[static_cast<std::size_t>(c)] = none;
+    place_of_cell_[static_cast<std::size_t>(c)] = none;
   marked_.clear();
   for (const Index n : candidates_)
     for (const Index m : at.mesh.ring_of_node()[n])
@@ -97,84 +83,48 @@ void RigidNodes<D>::find_probes(const Place& at, Index field)
           place = static_cast<Index>(marked_.size());
           marked_.push_back(c);
         }
-  if (probes_.size() < marked_.size())
-    probes_.resize(marked_.size());
+  if (touching_.size() < marked_.size())
+    touching_.resize(marked_.size());
   parallel_for(static_cast<Index>(marked_.size()), [&](Index k) {
-    const Index cell = marked_[static_cast<std::size_t>(k)];
-    std::vector<Probe>& probes = probes_[static_cast<std::size_t>(k)];
-    probes.clear();
-    Real near = 0;
-    for (const Index n : at.mesh.cell(cell))
-      near = std::max(near, at.mesh.node_size(n));
-    Vec<D>& sum = of_cell_[static_cast<std::size_t>(cell)].sum;
-    for_each_particle_in_cell(at.strips, bodies_of_field_[static_cast<std::size_t>(field)], cell, [&](const StripColumns<D>& columns, std::size_t p) {
-      const Vec<D> x = columns.x.of(p);
-      const SurfaceDistance<D> to = at.state.distance(at.shape, x);
-      const Real gap = to.distance - half_width_along<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
-      if (gap > near)
-        return;
-      probes.push_back({x, to.normal, gap});
-      sum += columns.volume.of(p) * (1 - gap / near) * to.normal;
-    });
+    auto& touching = touching_[static_cast<std::size_t>(k)];
+    touching.clear();
+    for_each_particle_in_cell(at.strips, bodies_of_field_[static_cast<std::size_t>(field)], marked_[static_cast<std::size_t>(k)],
+                              [&](const StripColumns<D>& columns, std::size_t p) {
+                                const Vec<D> x = columns.x.of(p);
+                                const SurfaceDistance<D> to = at.state.distance(at.shape, x);
+                                const Real gap = to.distance - half_width_along<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
+                                if (gap <= 0)
+                                  touching.push_back({{gap, to.normal, x - to.distance * to.normal}, x});
+                              });
   });
-  cells_.send(of_cell_, Whole{});
-  cells_.take(of_cell_, Whole{});
 }
 
 template <int D>
-void RigidNodes<D>::find_normals(const Place& at, std::span<RigidNode<D>> found)
-{
-  for (RigidNode<D>& one : found) {
-    thread_local std::vector<Index> cells;
-    cells.clear();
-    for (const Index m : at.mesh.ring_of_node()[one.node])
-      cells.insert(cells.end(), at.mesh.cells_of_node()[m].begin(), at.mesh.cells_of_node()[m].end());
-    std::ranges::sort(cells);
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    Vec<D> mean = Vec<D>::Zero();
-    for (const Index c : cells)
-      mean += of_cell_[static_cast<std::size_t>(c)].sum;
-    normal_[static_cast<std::size_t>(one.node)].setZero();
-    if (mean.isZero(0))
-      continue;
-    mean.stableNormalize();
-    const Vec<D> nearest = at.state.distance(at.shape, at.mesh.node(one.node)).normal;
-    constexpr Real same_side = 0.5;
-    one.normal = nearest.dot(mean) > same_side ? nearest : mean;
-    normal_[static_cast<std::size_t>(one.node)] = one.normal;
-  }
-  copies_.send(normal_, OfMarked{itself, candidate_});
-  copies_.take(normal_, OfMarked{itself, candidate_});
-}
-
-template <int D>
-void RigidNodes<D>::find_gaps(const Place& at, std::span<RigidNode<D>> found)
+void RigidNodes<D>::find_deepest(const Place& at, std::span<RigidNode<D>> found)
 {
   parallel_for_uneven(static_cast<Index>(candidates_.size()), [&](Index k) {
     const Index n = candidates_[static_cast<std::size_t>(k)];
-    Real& gap = gap_[static_cast<std::size_t>(n)] = nowhere;
-    const Vec<D> normal = normal_[static_cast<std::size_t>(n)];
-    if (normal.isZero(0))
-      return;
+    Touch<D>& deepest = touch_[static_cast<std::size_t>(n)];
     const Real beside = at.mesh.node_size(n) / 2;
     for (const Index m : at.mesh.ring_of_node()[n])
       for (const Index c : at.mesh.cells_of_node()[m])
-        for (const Probe& probe : probes_[static_cast<std::size_t>(place_of_cell_[static_cast<std::size_t>(c)])]) {
-          const Vec<D> arm = probe.x - at.mesh.node(n);
-          const Real along = normal.dot(arm);
-          if (arm.squaredNorm() - along * along <= beside * beside && probe.normal.dot(normal) > 0)
-            gap = std::min(gap, probe.gap);
+        for (const auto& [touch, x] : touching_[static_cast<std::size_t>(place_of_cell_[static_cast<std::size_t>(c)])]) {
+          const Vec<D> arm = x - at.mesh.node(n);
+          const Real along = touch.normal.dot(arm);
+          if (arm.squaredNorm() - along * along <= beside * beside)
+            deepest = std::min(deepest, touch);
         }
   });
-  back_.send(gap_, Gaps{});
-  back_.take(gap_of_others_, Gaps{});
-  for (std::size_t k = 0; k < staged_.size(); ++k)
-    if (candidate_[static_cast<std::size_t>(staged_[k])] != 0)
-      gap_[static_cast<std::size_t>(staged_[k])] = std::min(gap_[static_cast<std::size_t>(staged_[k])], gap_of_others_[k]);
+  back_.send(touch_, Whole{});
+  back_.take(touch_of_others_, Whole{});
+  for (std::size_t k = 0; k < staged_.size(); ++k) {
+    Touch<D>& deepest = touch_[static_cast<std::size_t>(staged_[k])];
+    deepest = std::min(deepest, touch_of_others_[k]);
+  }
   for (RigidNode<D>& one : found)
-    one.touches = gap_[static_cast<std::size_t>(one.node)] <= 0;
+    one.touch = touch_[static_cast<std::size_t>(one.node)];
   for (const Index n : candidates_)
-    gap_[static_cast<std::size_t>(n)] = nowhere;
+    touch_[static_cast<std::size_t>(n)] = {};
 }
 
 template <int D>
@@ -190,17 +140,16 @@ void RigidNodes<D>::find(const Mesh<D>& mesh, const OwnNodes& own, const Particl
       const std::size_t before = nodes_.size();
       find_candidates(at, static_cast<Index>(f), fields[f].nodes);
       const std::span<RigidNode<D>> found = std::span(nodes_).subspan(before);
-      find_probes(at, static_cast<Index>(f));
-      find_normals(at, found);
-      find_gaps(at, found);
+      find_touching_particles(at, static_cast<Index>(f));
+      find_deepest(at, found);
     }
-  std::erase_if(nodes_, [](const RigidNode<D>& one) { return !one.touches; });
+  std::erase_if(nodes_, [](const RigidNode<D>& one) { return !one.touch.is_seen(); });
 }
 
-#define TALUS_INSTANTIATE(D)                                                                                                            \
-  template void RigidNodes<D>::begin(const Mesh<D>&, const Subdomain&, Communicator&, const RigidScene<D>&,                             \
-                                     const std::vector<std::vector<Index>>&);                                                           \
-  template void RigidNodes<D>::find(const Mesh<D>&, const OwnNodes&, const ParticleStrips<D>&, const RigidScene<D>&,                    \
+#define TALUS_INSTANTIATE(D)                                                                                         \
+  template void RigidNodes<D>::begin(const Mesh<D>&, const Subdomain&, Communicator&, const RigidScene<D>&,          \
+                                     const std::vector<std::vector<Index>>&);                                        \
+  template void RigidNodes<D>::find(const Mesh<D>&, const OwnNodes&, const ParticleStrips<D>&, const RigidScene<D>&, \
                                     std::span<const RigidState<D>>, std::span<const VelocityField<D>>);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)

@@ -1,5 +1,7 @@
 #pragma once
 // Nodes at which material touches rigid bodies, and the impulses between both.
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -10,12 +12,30 @@
 
 namespace talus {
 
-/// A node with mass of a velocity field beside a rigid body.
+/// Where a particle touches a rigid body.
+template <int D>
+struct Touch {
+  Real gap = std::numeric_limits<Real>::infinity();  ///< between both surfaces [m], <= 0; infinite where nothing touches
+  Vec<D> normal = Vec<D>::Zero();                    ///< out of the rigid body, unit length
+  Vec<D> place = Vec<D>::Zero();                     ///< on its surface [m]
+  bool is_seen() const noexcept { return gap <= 0; }
+  /// The deeper one of two; of equally deep ones that with the smaller coordinates, so that their order does not matter.
+  friend bool operator<(const Touch& a, const Touch& b) noexcept
+  {
+    return a.gap != b.gap ? a.gap < b.gap : std::ranges::lexicographical_compare(a.place, b.place);
+  }
+  template <class Self>
+  static auto parts(Self& self) noexcept
+  {
+    return std::tie(self.gap, self.normal, self.place);
+  }
+};
+
+/// A node with mass of a velocity field that touches a rigid body.
 template <int D>
 struct RigidNode {
   Index rigid, field, node;
-  Vec<D> normal = Vec<D>::Zero();   ///< out of the rigid body, unit length; zero where it is not known
-  bool touches = false;             ///< whether particles reach the rigid body
+  Touch<D> touch;                   ///< the deepest one beside it
   bool sticks = false;              ///< whether the material has the velocity of the rigid body in this step
   Vec<D> pressed = Vec<D>::Zero();  ///< impulse on the material along the normal in this step [N s]
   Vec<D> rubbed = Vec<D>::Zero();   ///< across it
@@ -23,15 +43,14 @@ struct RigidNode {
 
 /// Finds in every step where material touches rigid bodies, and exchanges impulses there.
 ///
-/// **Gap.**  A particle touches a body if the distance of its centre from the surface is at most its half width along the normal there,
-/// |F^T n| V0^(1/D) / 2.  A node touches if a particle within two rings of cells and half a mean edge of the line along its normal does.
+/// **Where.**  A particle touches a body if the distance of its centre from the surface is at most its half width along the normal there,
+/// |F^T n| V0^(1/D) / 2.  A node touches if a particle within two rings of cells does whose normal passes it by half a mean edge at most.
+/// Normal and place of contact are those of the particle that reaches deepest.
 ///
-/// **Normal.**  That of the surface nearest to the node, unless the particles around are on another side of the body, as beside a thin one:
-/// then the mean of theirs.
-///
-/// **Impulse.**  Where both approach, the material gets the normal velocity of the body at the node (a plastic impact), and the tangential one
-/// unless friction carries less.  The velocity of a free body after the step is the solution of its equations of motion with all these
-/// impulses, so that a light body between heavy nodes is stable; Newton's method finds it, with exact sums over the nodes of all ranks.
+/// **Impulse.**  Where both approach, the material at the node gets the normal velocity of the body at the place of contact (a plastic
+/// impact), and the tangential one unless friction carries less.  The velocity of a free body after the step is the solution of its
+/// equations of motion with all these impulses, so that a light body between heavy nodes is stable; Newton's method finds it, with exact sums
+/// over the nodes of all ranks.
 template <int D>
 class RigidNodes {
  public:
@@ -44,10 +63,10 @@ class RigidNodes {
   void find(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips, const RigidScene<D>& scene,
             std::span<const RigidState<D>> states, std::span<const VelocityField<D>> fields);
   /// Exchanges impulses between the new velocities of nodes and bodies.  Boundary conditions act on nodes that change.  Collective.
-  void act(const Kick& kick, const Mesh<D>& mesh, Communicator& ranks, const RigidScene<D>& scene, BoundaryConditions<D>& conditions,
+  void act(const Kick& kick, Communicator& ranks, const RigidScene<D>& scene, BoundaryConditions<D>& conditions,
            std::span<RigidState<D>> states, std::span<VelocityField<D>> fields, ExactSums<BoundaryWork>& work);
   /// Makes remapped velocities obey the contacts of this step; nodes that slide keep the velocity of the step.
-  void hold(Real time, const Mesh<D>& mesh, const BoundaryConditions<D>& conditions, std::span<const RigidState<D>> states,
+  void hold(Real time, const BoundaryConditions<D>& conditions, std::span<const RigidState<D>> states,
             std::span<VelocityField<D>> fields) const;
   /// Adds the impulses and the work of this step to the sums of each body.
   void add_sums(const Mesh<D>& mesh, std::span<const RigidState<D>> states, std::span<const VelocityField<D>> fields,
@@ -55,21 +74,6 @@ class RigidNodes {
   std::span<const RigidNode<D>> nodes() const noexcept { return nodes_; }
 
  private:
-  /// A particle near a body.
-  struct Probe {
-    Vec<D> x, normal;
-    Real gap;  ///< [m]
-  };
-  /// The sum of the normals at the particles of a cell, weighted by volume and nearness.
-  struct CellNormal {
-    Vec<D> sum = Vec<D>::Zero();
-    bool is_seen() const noexcept { return !sum.isZero(0); }
-    template <class Self>
-    static auto parts(Self& self) noexcept
-    {
-      return std::tie(self.sum);
-    }
-  };
   struct Place {
     const Mesh<D>& mesh;
     const OwnNodes& own;
@@ -79,25 +83,23 @@ class RigidNodes {
     Index rigid;
   };
   void find_candidates(const Place& at, Index field, const Nodes<D>& nodes);
-  void find_probes(const Place& at, Index field);
-  void find_normals(const Place& at, std::span<RigidNode<D>> found);
-  void find_gaps(const Place& at, std::span<RigidNode<D>> found);
+  void find_touching_particles(const Place& at, Index field);
+  void find_deepest(const Place& at, std::span<RigidNode<D>> found);
 
   std::size_t n_bodies_ = 0;
   std::vector<std::vector<Index>> bodies_of_field_;
   std::vector<RigidNode<D>> nodes_;  ///< own ones, by rigid body, field and node
-  HaloExchange copies_, cells_, back_;
-  std::vector<Index> staged_;           ///< own nodes whose gap other ranks send, one after the other
-  std::vector<Real> gap_of_others_;     ///< by place in `staged_` [m]
+  HaloExchange copies_, back_;
+  std::vector<Index> staged_;              ///< own nodes whose touches other ranks send, one after the other
+  std::vector<Touch<D>> touch_of_others_;  ///< by place in `staged_`
   // Of one rigid body and field at a time:
   std::vector<std::uint8_t> candidate_;  ///< by node
   std::vector<Index> candidates_;        ///< held here, ascending
-  std::vector<Vec<D>> normal_;           ///< by node
-  std::vector<Real> gap_;                ///< by node [m]
-  std::vector<CellNormal> of_cell_;      ///< by cell
+  std::vector<Touch<D>> touch_;          ///< by node
   std::vector<Index> marked_;            ///< cells within two rings of candidates
   std::vector<Index> place_of_cell_;     ///< in `marked_`, or none
-  std::vector<std::vector<Probe>> probes_;  ///< by place in `marked_`
+  /// Touches of particles by place in `marked_`, with the centres of the particles.
+  std::vector<std::vector<std::pair<Touch<D>, Vec<D>>>> touching_;
 };
 
 }  // namespace talus

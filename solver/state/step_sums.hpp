@@ -104,8 +104,8 @@ void add_step(const StepSums<D>& sums, const Vec<D>& gravity, Real kick, MassLed
   energy.arrival += boundary.arrival + beyond.arrival + contact.pressure + rigid.arrival;
   energy.friction += boundary.friction + beyond.friction + contact.friction + rigid.friction;
   energy.waves += boundary.waves;
-  energy.nodes += nodes.kinetic_after - nodes.kinetic_before - boundary.arrival - contact.pressure - rigid.arrival + beyond.friction +
-                  beyond.moved;
+  energy.nodes +=
+      nodes.kinetic_after - nodes.kinetic_before - boundary.arrival - contact.pressure - rigid.arrival + beyond.friction + beyond.moved;
   energy.remap += sums.remap.value();
   energy.loads += sums.work_on_mesh.value() + sums.work_on_particles.value();
   energy.internal += sums.internal.value();

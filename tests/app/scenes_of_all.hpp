@@ -242,7 +242,8 @@ inline std::vector<SceneCase> scenes_of_all()
   rigid.more =
       "rigid:\n  - {name: disk, shape: {type: sphere, centre: [1.6, 0.32], radius: 0.3}, density: 1500, friction: 0.4, velocity: [-3, 0], "
       "angular_velocity: [5]}\n"
-      "  - {name: stone, shape: {type: polygon, points: [[1.4, 1.1], [1.9, 1.2], [1.6, 1.5]]}, mass: 200, friction: 0.2, velocity: [-4, -4]}\n"
+      "  - {name: stone, shape: {type: polygon, points: [[1.4, 1.1], [1.9, 1.2], [1.6, 1.5]]}, mass: 200, friction: 0.2, velocity: [-4, "
+      "-4]}\n"
       "  - {name: ram, shape: {type: box, low: [0.2, 1.45], high: [1.1, 1.6]}, motion: given, velocity: [0, -6], angular_velocity: [-1], "
       "table: [[0, 0], [0.02, 1], [1, 0]], friction: 0.3}\n";
   all.push_back({"rigid", rigid});
@@ -278,8 +279,10 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"extended_solid", two_in_3d});
   SceneParts rigid_in_3d = in_3d;
   rigid_in_3d.more =
-      "rigid:\n  - {name: ball, shape: {type: sphere, centre: [1.3, 0.5, 0.5], radius: 0.25}, density: 1500, friction: 0.4, velocity: [-4, 0, 0]}\n"
-      "  - {name: drum, shape: {type: cylinder, from: [0.4, 1.2, 0.2], to: [0.6, 1.25, 0.8], radius: 0.15}, mass: 90, friction: 0.2, velocity: "
+      "rigid:\n  - {name: ball, shape: {type: sphere, centre: [1.3, 0.5, 0.5], radius: 0.25}, density: 1500, friction: 0.4, velocity: [-4, "
+      "0, 0]}\n"
+      "  - {name: drum, shape: {type: cylinder, from: [0.4, 1.2, 0.2], to: [0.6, 1.25, 0.8], radius: 0.15}, mass: 90, friction: 0.2, "
+      "velocity: "
       "[3, -3, 0], angular_velocity: [1, 2, 3]}\n";
   all.push_back({"rigid_solid", rigid_in_3d});
   SceneParts loaded_in_3d = in_3d;

@@ -17,8 +17,8 @@ std::string block_and(const std::string& rigid, bool solid = false)
          "], cells: [4, 4" + (solid ? ", 4" : "") + "]}}\n" +
          "materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]\n"
          "bodies:\n  - {name: block, material: rubber, shape: {type: box, low: [0, 0" +
-         three + "], high: [2, 1" + wide + "]}, particles_per_cell: 4}\n" +
-         "loads: [{type: gravity, acceleration: [0, -9.81" + three + "]}]\n"
+         three + "], high: [2, 1" + wide + "]}, particles_per_cell: 4}\n" + "loads: [{type: gravity, acceleration: [0, -9.81" + three +
+         "]}]\n"
          "boundaries: [{type: fixed, on: y_min}]\ntime: {end: 0.02, max_step: 2.0e-3}\n"
          "outputs: {history: {every: 0.01}, particles: {every: 0.01}}\nrigid:\n" +
          rigid;
@@ -47,7 +47,8 @@ TEST_F(RigidOfScene, WhatCannotBeIsRefusedWithItsPlace)
         "rigid[1].shape.centre: needs 2 values in 2 dimensions, not 3", "rigid[2]: give a shape or a file",
         "rigid[2].name: \"a\" is the name of rigid[1] already", "rigid[3]: a free body needs mass or density",
         "rigid[3].shape: a rigid body is a box, sphere, cylinder or polygon", "rigid[4].file: an STL file is a surface in space",
-        "rigid[4].inertia: needs 1 value in 2 dimensions, not 3", "rigid[4]: a table is of a given motion", "rigid[4].friction: -1 must be >= 0"})
+        "rigid[4].inertia: needs 1 value in 2 dimensions, not 3", "rigid[4]: a table is of a given motion",
+        "rigid[4].friction: -1 must be >= 0"})
     EXPECT_THAT(outcome.err, HasSubstr(words));
   EXPECT_THAT(outcome.err, HasSubstr("scene.yaml:10:12: error: rigid[0].name"));
 }
@@ -87,9 +88,10 @@ TEST_F(RigidOfScene, AFileThatIsOpenOrInsideOutIsRefused)
 
 TEST_F(RigidOfScene, ARunWritesItsPlaceItsForcesAndItsSurface)
 {
-  write("scene.yaml", block_and("  - {name: ball, shape: {type: sphere, centre: [1, 1.32], radius: 0.3}, density: 500, velocity: [1, -3]}\n"
-                                "  - {name: ram, shape: {type: polygon, points: [[0, 1.5], [0, 1.8], [0.6, 1.8], [0.1, 1.7]]}, motion: given, "
-                                "velocity: [0.5, 0]}\n"));
+  write("scene.yaml",
+        block_and("  - {name: ball, shape: {type: sphere, centre: [1, 1.32], radius: 0.3}, density: 500, velocity: [1, -3]}\n"
+                  "  - {name: ram, shape: {type: polygon, points: [[0, 1.5], [0, 1.8], [0.6, 1.8], [0.1, 1.7]]}, motion: given, "
+                  "velocity: [0.5, 0]}\n"));
   ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0) << read("err.txt");
   const HistoryTable table = read_history(folder_ / "out/history.csv");
   EXPECT_NEAR((*table["rigid_ball_x"])[2], 1.02, 1e-3);

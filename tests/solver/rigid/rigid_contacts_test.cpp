@@ -21,14 +21,18 @@ FacetSurface<2> block(Real width, Real height)
 
 RigidBody<2> ball(Real radius, Real mass, Real friction)
 {
-  RigidBody<2> body{.name = "ball", .shape = std::make_shared<const RigidShape<2>>(radius), .mass = mass, .friction = friction, .motion = {}};
+  RigidBody<2> body{
+      .name = "ball", .shape = std::make_shared<const RigidShape<2>>(radius), .mass = mass, .friction = friction, .motion = {}};
   body.inertia = 0.4 * mass * radius * radius * Mat3::Identity();
   return body;
 }
 RigidBody<2> brick(Real width, Real height, Real mass, Real friction)
 {
-  RigidBody<2> body{
-      .name = "brick", .shape = std::make_shared<const RigidShape<2>>(block(width, height)), .mass = mass, .friction = friction, .motion = {}};
+  RigidBody<2> body{.name = "brick",
+                    .shape = std::make_shared<const RigidShape<2>>(block(width, height)),
+                    .mass = mass,
+                    .friction = friction,
+                    .motion = {}};
   body.inertia = mass * (width * width + height * height) / 12 * Mat3::Identity();
   return body;
 }
