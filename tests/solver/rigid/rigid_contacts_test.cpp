@@ -10,7 +10,7 @@ namespace {
 RigidWall<2> ground_2d(const Vec<2>& normal)
 {
   const Vec<2> along(normal[1], -normal[0]);
-  return {"ground", FacetSurface<2>({-200 * along, 200 * along}, {{0, 1}})};
+  return {"ground", FacetSurface<2>({-200 * along, 200 * along}, {{1, 0}})};
 }
 
 FacetSurface<2> block(Real width, Real height)

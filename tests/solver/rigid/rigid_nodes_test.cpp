@@ -111,8 +111,8 @@ TYPED_TEST(RigidIn, FrictionIsAtMostItsCoefficientTimesThePressure)
   make_step(m, 1e-6);
   Real pressed = 0;
   for (const RigidNode<D>& at : m.work.rigid.nodes()) {
-    EXPECT_NEAR(at.normal.norm(), 1, 1e-12);
-    EXPECT_NEAR(at.rubbed.dot(at.normal), 0, 1e-12 * at.pressed.norm());
+    EXPECT_NEAR(at.touch.normal.norm(), 1, 1e-12);
+    EXPECT_NEAR(at.rubbed.dot(at.touch.normal), 0, 1e-12 * at.pressed.norm());
     EXPECT_LE(at.rubbed.norm(), 0.25 * at.pressed.norm() * (1 + 1e-9));
     pressed += at.pressed.norm();
   }
