@@ -11,6 +11,8 @@ namespace {
 
 /// A share of a corner below this means that a nearest point lies on the opposite edge.
 constexpr Real on_edge = 1e-9;
+/// A point nearer than this times the size of the surface lies on it.
+constexpr Real round_off = 1e-10;
 
 Vec<3> cross_of(const Vec<3>& a, const Vec<3>& b) noexcept
 {
@@ -84,6 +86,10 @@ FacetSurface<D>::FacetSurface(Corners corners, Facets facets)
         return box;
       })
 {
+  Extent<D> all;
+  for (const Vec<D>& corner : corners_)
+    all.take(corner);
+  size_ = (all.high - all.low).norm();
   normal_.resize(facets_.size());
   normal_of_node_.assign(corners_.size(), Vec<D>::Zero());
   normal_of_edge_.resize(D == 3 ? facets_.size() : 0);
@@ -190,8 +196,8 @@ SurfaceDistance<D> FacetSurface<D>::distance(const Vec<D>& x) const
   const Vec<D> outward = normal_at(static_cast<std::size_t>(facet), nearest.share), away = x - nearest.place;
   const Real distance = away.norm();
   const bool behind = away.dot(outward) < 0;
-  if (distance <= 1e-12 * nearest.place.norm())
-    return {0, outward.stableNormalized()};
+  if (distance <= round_off * (size_ + x.norm()))  // its direction would be that of round-off
+    return {behind ? -distance : distance, outward.stableNormalized()};
   return {behind ? -distance : distance, (behind ? -1 : 1) / distance * away};
 }
 

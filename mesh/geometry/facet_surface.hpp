@@ -66,6 +66,7 @@ class FacetSurface {
   std::vector<Vec<D>> normal_of_node_;  // of corners
   /// 3-D: of the edge opposite each corner of a facet.
   std::vector<std::array<Vec<D>, D>> normal_of_edge_;
+  Real size_ = 0;  // diagonal of the bounding box [m]
   BoxTree<D> tree_;
 };
 

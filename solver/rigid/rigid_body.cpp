@@ -31,6 +31,20 @@ void damp(const RigidScene<D>& scene, Real damping, const std::vector<RigidState
   }
 }
 
+namespace {
+
+/// A rotation followed by one with an angular velocity [rad/s] over a time [s].
+Mat3 turned(const Mat3& turn, const Vec3& spin, Real time)
+{
+  const Real rate = spin.norm();
+  if (rate == 0)
+    return turn;
+  const Eigen::AngleAxis<Real> by(rate * time, Eigen::Matrix<Real, 3, 1>(spin / rate));
+  return Eigen::Quaternion<Real>(Eigen::Matrix<Real, 3, 3>(by.toRotationMatrix() * turn)).normalized().toRotationMatrix();
+}
+
+}  // namespace
+
 template <int D>
 void move(const RigidScene<D>& scene, Real dt, std::vector<RigidState<D>>& states)
 {
@@ -38,15 +52,15 @@ void move(const RigidScene<D>& scene, Real dt, std::vector<RigidState<D>>& state
     RigidState<D>& state = states[r];
     const RigidBody<D>& body = scene.bodies[r];
     state.x += dt * state.v;
-    const Real rate = state.spin.norm();
-    if (rate == 0)
+    if (D == 2 || !body.is_free()) {
+      state.turn = turned(state.turn, state.spin, dt);
       continue;
+    }
     const Vec3 angular_momentum = state.inertia(body) * state.spin;
-    const Eigen::AngleAxis<Real> by(rate * dt, Eigen::Matrix<Real, 3, 1>(state.spin / rate));
-    const Eigen::Quaternion<Real> turned(Eigen::Matrix<Real, 3, 3>(by.toRotationMatrix() * state.turn));
-    state.turn = turned.normalized().toRotationMatrix();
-    if (D == 3 && body.is_free())
-      state.spin = state.inertia(body).inverse() * angular_momentum;
+    RigidState<D> middle = state;
+    middle.turn = turned(state.turn, state.spin, dt / 2);
+    state.turn = turned(state.turn, middle.inertia(body).inverse() * angular_momentum, dt);
+    state.spin = state.inertia(body).inverse() * angular_momentum;
   }
 }
 

@@ -59,6 +59,7 @@ TEST(SurfaceOfSegments, DistancesAreThoseOfARectangle)
   expect({2 + 3, 1 + 4}, 5, {0.6, 0.8});
   expect({-0.3, 0.5}, 0.3, {-1, 0});
   expect({1, 0}, 0, {0, -1});
+  expect({1e-6, 1e-14}, -1e-14, {0, -1});  // not the direction of round-off
 }
 
 TEST(SurfaceOfSegments, EnclosesAreaCentreAndInertia)
