@@ -65,7 +65,7 @@ struct ReactionNow {
 };
 template <int D>
 struct ContactNow {
-  Vec<D> force;         ///< on the first body [N]
+  Vec<D> force;         ///< on the first body or side [N]
   Real friction, loss;  ///< [J]
 };
 template <int D>
@@ -161,6 +161,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     add(reaction_columns(), wall.name);
   for (const ContactLaw& contact : start.problem.contacts.laws)
     add(contact_columns(), contact.name());
+  for (const CutLaw& cut : start.problem.cuts)
+    add(cut_columns(), cut.group);
   for (const PointSpec& point : spec.points)
     add(point_columns(), point.name);
   for (const FrontSpec& one : spec.fronts)

@@ -65,6 +65,7 @@ struct Scene {
   std::optional<WaterSpec> water;
   std::vector<LoadSpec> loads;
   std::vector<ContactSpec> contacts;
+  std::vector<CutSpec> cuts;
   std::vector<BoundaryOptions> boundaries;
   std::vector<StageSpec> stages;
   OutputSpec outputs;
@@ -95,6 +96,8 @@ struct Scene {
         optional_list("loads", &Scene::loads, "forces"),
         optional_list("contacts", &Scene::contacts,
                       "bodies that touch, slide and part, each with velocities of its own; without, all bodies stick to each other"),
+        optional_list("cuts", &Scene::cuts,
+                      "facet groups inside the mesh whose sides slide and part: faults, joints, sheet piles; each has its own nodes there"),
         optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
         optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),
         optional("outputs", &Scene::outputs, any, "-", "what is written"),

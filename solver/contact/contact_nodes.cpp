@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "solver/contact/particles_in_cell.hpp"
+
 namespace talus {
 
 namespace {
@@ -50,15 +52,6 @@ Real surface_in_cell(const Vec<D>& first, const Vec<D>& second)
   const Vec<D> difference = second - first;
   const Real size = difference.norm();
   return size > 0 ? std::max(Real{0}, std::min(second.dot(difference), -first.dot(difference)) / size) : 0;
-}
-
-/// Half the width of a particle along a unit vector [m]: the stretched half side of a cube of its initial volume.
-template <int D>
-Real half_width(const Mat3& F, Real volume0, const Vec<D>& along) noexcept
-{
-  const Mat<D> part = F.template topLeftCorner<D, D>();
-  const Real side = D == 2 ? std::sqrt(volume0) : std::cbrt(volume0);
-  return 0.5 * side * (part.transpose() * along).norm();
 }
 
 }  // namespace
@@ -157,20 +150,8 @@ template <int D>
 template <class F>
 void ContactNodes<D>::for_each_particle_of(const ParticleStrips<D>& strips, std::size_t field, Index cell, F&& f) const
 {
-  const Index block = cell / block_cells, strip = cell % block_cells / strip_cells, c = cell % strip_cells;
-  for (const Index body : bodies_[field]) {
-    const std::span<const Strip> all = strips.strips(strips.key(body, block));
-    if (all.empty())
-      continue;
-    const Strip& one = all[to_size(strip)];
-    const Index count = one.count[to_size(c)];
-    if (count == 0)
-      continue;
-    const Index begin = std::accumulate(one.count.begin(), one.count.begin() + c, Index{0});
-    const StripColumns<D> columns = strips.columns(one);
-    for (Index i = begin; i < begin + count; ++i)
-      f(columns, to_size(i));
-  }
+  for (const Index body : bodies_[field])
+    for_each_particle_in(strips, body, cell, f);
 }
 
 template <int D>

@@ -25,7 +25,9 @@ enum class MessageTag : int {
   contact_nodes = 10,
   contact_cells = 11,
   contact_reach = 12,
-  surfaces = 13
+  surfaces = 13,
+  cut_nodes = 14,
+  cut_reach = 15
 };
 
 /// Selects the parts of a row to be sent: the whole row.
