@@ -54,7 +54,7 @@ TYPED_TEST(Cuts, NodesAreDoubledExceptAtTips)
 TYPED_TEST(Cuts, CellsStayNeighboursAndPointsAreFoundAsBefore)
 {
   constexpr int D = TypeParam::value;
-  const Mesh<D> uncut(cut_box<D>(5, 0.7, 0.2)), mesh = cut_along(cut_box<D>(5, 0.7, 0.2));
+  const Mesh<D> uncut(cut_box<D>(6, 0.7, 0.2)), mesh = cut_along(cut_box<D>(6, 0.7, 0.2));
   ASSERT_EQ(mesh.n_cells(), uncut.n_cells());
   const Locator<D> locate(mesh), locate_uncut(uncut);
   for (Index c = 0; c < mesh.n_cells(); ++c) {
@@ -119,7 +119,13 @@ TYPED_TEST(Cuts, TheFirstSideOfAClosedCutIsTheInside)
 {
   constexpr int D = TypeParam::value;
   MeshData<D> data = cut_box<D>(8, 1);
-  add_facets<D>(data, "hull", [](const Vec<D>& x) { return std::abs((x.array() - 0.5).abs().maxCoeff() - 0.25) < 1e-9; });
+  for (const Index axis : {0, 1, 2})
+    for (const Real end : {0.25, 0.75})
+      if (axis < D) {
+        add_facets<D>(data, "face",
+                      [&](const Vec<D>& x) { return std::abs(x[axis] - end) < 1e-9 && (x.array() - 0.5).abs().maxCoeff() < 0.2501; });
+        data.facet_sets["hull"].insert(data.facet_sets["hull"].end(), data.facet_sets["face"].begin(), data.facet_sets["face"].end());
+      }
   const Mesh<D> mesh = cut_along(data, {"hull"});
   EXPECT_TRUE(mesh.cuts().tips.empty());
   for (const NodePair<D>& pair : mesh.cuts().pairs) {
@@ -160,7 +166,7 @@ TYPED_TEST(Cuts, WhatIsNoCutIsRefused)
 TYPED_TEST(Cuts, PartsHaveBothNodesOfAPairAndTheCellsAround)
 {
   constexpr int D = TypeParam::value;
-  const Mesh<D> mesh = cut_along(cut_box<D>(D == 2 ? 24 : 8, 0.8, 0.2));
+  const Mesh<D> mesh = cut_along(cut_box<D>(D == 2 ? 24 : 12, 0.8, 0.2));
   const int ranks = 4;
   const auto rank_of_block = partition<D>(mesh, std::vector<std::int64_t>(static_cast<std::size_t>(blocks_of(mesh.n_cells())), 100), ranks);
   const Locator<D> locate_in_whole(mesh);
@@ -181,9 +187,8 @@ TYPED_TEST(Cuts, PartsHaveBothNodesOfAPairAndTheCellsAround)
         EXPECT_EQ(part.subdomain.whole_cell(locate(part.mesh, middle(mesh, c), none).value()), c);
     }
     for (const Facet f : part.mesh.cuts().facets)
-      EXPECT_TRUE(std::ranges::binary_search(mesh.cuts().facets, Facet{part.subdomain.whole_cell(f.cell), f.local}, [](Facet a, Facet b) {
-        return std::tie(a.cell, a.local) < std::tie(b.cell, b.local);
-      }));
+      EXPECT_TRUE(std::ranges::binary_search(mesh.cuts().facets, Facet{part.subdomain.whole_cell(f.cell), f.local},
+                                             [](Facet a, Facet b) { return std::tie(a.cell, a.local) < std::tie(b.cell, b.local); }));
   }
   EXPECT_GT(shared, 0) << "no pair has two owners: the test shows nothing";
 }
