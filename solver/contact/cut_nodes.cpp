@@ -18,7 +18,7 @@ template <int D>
 Csr cells_of_sides(const Mesh<D>& mesh)
 {
   Csr all;
-  all.begin.push_back(0);
+  all.begin.assign(1, 0);
   std::vector<Index> cells;
   for (const NodePair<D>& pair : mesh.cuts().pairs)
     for (const Index n : {pair.first, pair.second}) {
