@@ -37,6 +37,7 @@ CASES = [
     "sliding_block",
     "colliding_disks",
     "contact",
+    "cut",
     "cantilever",
     "slope_failure_2d",
     "slope_failure_3d",

@@ -238,6 +238,16 @@ inline std::vector<SceneCase> scenes_of_all()
   SceneParts contacts_tied = two_materials;
   contacts_tied.more = "kernel: umls\ncontacts:\n  - {between: [high, low], friction: 0.3}\n  - {between: [right, low], tied: true}\n";
   all.push_back({"contacts_umls", contacts_tied});
+  SceneParts cuts = two_materials;
+  cuts.dimension =
+      "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [6, 6]}, groups: [\n"
+      "  {name: level, of: inside, within: {low: [-1, 0.66], high: [1.34, 0.67]}},\n"
+      "  {name: upright, of: inside, within: {low: [1.66, -1], high: [1.67, 1.34]}}]}\n";
+  cuts.more = "cuts:\n  - {on: level, friction: 0.3, cohesion: 100}\n  - {on: upright, friction: 0.1, tied_until: 0.02}\n";
+  all.push_back({"cuts", cuts});
+  cuts.more = "kernel: umls\ntransfer: {scheme: apic}\ncuts:\n  - {on: level, friction: 5}\n  - {on: upright, tied: true}\n";
+  cuts.boundaries = "boundaries: [{type: roller, on: level}, {type: roller, on: y_min}, {type: friction, on: upright, coefficient: 0.2}]\n";
+  all.push_back({"cuts_with_walls_umls", cuts});
   SceneParts extended = two_materials;
   extended.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended", extended});
@@ -264,6 +274,14 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"two_materials_solid", two_in_3d});
   two_in_3d.more = "kernel: linear\ncontacts: [{between: [low, high], friction: 0.3}]\n";
   all.push_back({"contacts_solid", two_in_3d});
+  SceneParts cuts_in_3d = two_in_3d;
+  cuts_in_3d.dimension =
+      "dimension: 3\nmesh: {grid: {low: [0, 0, 0], high: [2, 2, 1], cells: [4, 4, 2]}, groups: [\n"
+      "  {name: level, of: inside, within: {low: [-1, 0.99, -1], high: [1.6, 1.01, 2]}}]}\n";
+  cuts_in_3d.more = "cuts: [{on: level, friction: 0.3, cohesion: 50}]\n";
+  all.push_back({"cuts_solid", cuts_in_3d});
+  cuts_in_3d.more = "kernel: linear\ntransfer: {scheme: flip}\ncuts: [{on: level, friction: 0.3, tied_until: 0.02}]\n";
+  all.push_back({"cuts_solid_linear", cuts_in_3d});
   two_in_3d.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended_solid", two_in_3d});
   SceneParts loaded_in_3d = in_3d;
