@@ -241,8 +241,13 @@ inline std::vector<SceneCase> scenes_of_all()
   SceneParts cuts = two_materials;
   cuts.dimension =
       "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [6, 6]}, groups: [\n"
-      "  {name: level, of: inside, within: {low: [-1, 0.66], high: [1.34, 0.67]}},\n"
-      "  {name: upright, of: inside, within: {low: [1.66, -1], high: [1.67, 1.34]}}]}\n";
+      "  {name: level, of: inside, within: {low: [-1, 0.99], high: [1.34, 1.01]}},\n"
+      "  {name: upright, of: inside, within: {low: [0.99, -1], high: [1.01, 0.68]}}]}\n";
+  cuts.bodies =
+      "bodies:\n"
+      "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, velocity: [3, -1]}\n"
+      "  - {name: high, material: other, shape: {type: box, low: [0, 1], high: [1.4, 1.6]}, particles_per_cell: 4, velocity: [1, -2]}\n"
+      "  - {name: right, material: stuff, shape: {type: box, low: [1, 0], high: [2, 1]}, particles_per_cell: 3}\n";
   cuts.more = "cuts:\n  - {on: level, friction: 0.3, cohesion: 100}\n  - {on: upright, friction: 0.1, tied_until: 0.02}\n";
   all.push_back({"cuts", cuts});
   cuts.more = "kernel: umls\ntransfer: {scheme: apic}\ncuts:\n  - {on: level, friction: 5}\n  - {on: upright, tied: true}\n";
