@@ -54,8 +54,8 @@ TEST_F(CutsOfScene, WhatCannotBeIsRefusedWithItsPlace)
 
 TEST_F(CutsOfScene, GroupsThatAreNoCutAreRefused)
 {
-  EXPECT_THAT(check("  - {on: jont}\n").err,
-              HasSubstr("block.yaml:13:5: error: cuts[0].on: the mesh has no facet group \"jont\" \xE2\x80\x94 did you mean \"joint\"?\n"));
+  EXPECT_THAT(check("  - {on: jointt}\n").err,
+              HasSubstr("block.yaml:13:5: error: cuts[0].on: the mesh has no facet group \"jointt\" \xE2\x80\x94 did you mean \"joint\"?\n"));
   EXPECT_THAT(check("  - {on: joint}\n  - {on: y_min}\n").err,
               HasSubstr("block.yaml:14:5: error: cuts[1].on: 8 of the 8 facets of \"y_min\" lie on the boundary of the mesh: a cut goes "
                         "through the inside, with cells on both of its sides\n"));
