@@ -37,8 +37,7 @@ Csr cells_of_sides(const Mesh<D>& mesh)
 }  // namespace
 
 template <int D>
-void CutNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const OwnNodes& own,
-                        std::span<const CutLaw> laws)
+void CutNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, std::span<const CutLaw> laws)
 {
   laws_.assign(laws.begin(), laws.end());
   if (laws.empty())
@@ -219,24 +218,26 @@ void CutNodes<D>::hold(Real time, const OwnNodes& own, const BoundaryConditions<
     if (!both_move(at) || (!own.has(at.first) && !own.has(at.second)) || (!at.tied && at.pressed.isZero(0)))
       continue;
     const Half &first = half(at.first), &second = half(at.second);
+    const auto keep = [&](Index n, const Vec<D>& v) {
+      if (own.has(n))
+        nodes.remapped[static_cast<std::size_t>(n)].v = v;
+    };
+    if (!at.tied && !at.sticks && !at.rubbed.isZero(0)) {  // a node that slides keeps the velocity of the step, as at walls
+      keep(at.first, first.change);
+      keep(at.second, second.change);
+      continue;
+    }
     Vec<D> v_first = first.v, v_second = second.v;
     if (at.tied) {
       v_first = v_second = (first.mass * first.v + second.mass * second.v) / (first.mass + second.mass);
-    } else if (!at.sticks && !at.rubbed.isZero(0)) {  // a node that slides keeps the velocity of the step, as at walls
-      v_first = first.change, v_second = second.change;
     } else {
       const auto side = [&](Index n) { return Side<D>{conditions, n, time, half(n).mass, half(n).v}; };
       const Exchange<D> by = exchange(side(at.first), side(at.second), at.normal, [&](Real) { return at.sticks ? unlimited : 0; });
       const Vec<D> impulse = by.pressed + by.rubbed;
       v_first += impulse / first.mass, v_second -= impulse / second.mass;
     }
-    const bool slides = !at.tied && !at.sticks && !at.rubbed.isZero(0);
-    const auto keep = [&](Index n, const Vec<D>& v) {
-      if (own.has(n))
-        nodes.remapped[static_cast<std::size_t>(n)].v = slides ? v : conditions.held(n, time, v);
-    };
-    keep(at.first, v_first);
-    keep(at.second, v_second);
+    keep(at.first, conditions.held(at.first, time, v_first));
+    keep(at.second, conditions.held(at.second, time, v_second));
   }
 }
 

@@ -42,7 +42,7 @@ template <int D>
 class CutNodes {
  public:
   /// Makes room for these cuts of the mesh, which hold for the run.  Collective.
-  void begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const OwnNodes& own, std::span<const CutLaw> laws);
+  void begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, std::span<const CutLaw> laws);
   bool any() const noexcept { return !laws_.empty(); }
 
   /// Unites the sums of tied nodes in a step that begins at `time` [s] and in which forces act over `kick` [s].  To be called before the
@@ -60,8 +60,8 @@ class CutNodes {
  private:
   /// What one node of a pair brings to it.
   struct Half {
-    Real mass = 0;  ///< zero if the node does not move by itself [kg]
-    Real reach = 0;
+    Real mass = 0;   ///< zero if the node does not move by itself [kg]
+    Real reach = 0;  ///< of the particles of its side, out of that side [m]
     Vec<D> momentum = Vec<D>::Zero(), force = Vec<D>::Zero();
     Vec<D> v = Vec<D>::Zero(), change = Vec<D>::Zero();
   };

@@ -101,7 +101,7 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
     m.add_field();
   transfer.prepare(problem);
   work.contact.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.contacts);
-  work.cuts.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.own, problem.cuts);
+  work.cuts.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.cuts);
   work.sums.contacts.resize(problem.contacts.laws.size() + problem.cuts.size());
   state.contacts.resize(work.sums.contacts.size());
   work.carriers = TrackedIds(ids_of(problem.loads.on_particles));

@@ -7,11 +7,10 @@ namespace talus::cuts_of_scene_test {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 /// A block in the whole mesh, which the group `joint` crosses halfway up; the groups `crossing` and `short_one` go upwards.
 std::string block(const std::string& cuts, const std::string& more = "", const std::string& time = "time: {end: 0.02}",
-                  const std::string& pull = "2")
+                  const std::string& pull = "2", const std::string& load = "")
 {
   return "title: Block\ndimension: 2\n"
          "mesh: {grid: {low: [0, 0], high: [2, 2], cells: [8, 8]}, groups: [\n"
@@ -23,8 +22,8 @@ std::string block(const std::string& cuts, const std::string& more = "", const s
          "materials: [{name: stone, law: neo_hookean, density: 1000, youngs_modulus: 1.0e6, poisson_ratio: 0.3}]\n"
          "bodies: [{name: all, material: stone, shape: {type: box, low: [0, 0], high: [2, 1.5]}, particles_per_cell: 4}]\n"
          "loads: [{type: gravity, acceleration: [" +
-         pull +
-         ", -10]}]\n"
+         pull + ", -10]}" + (load.empty() ? "" : ", " + load) +
+         "]\n"
          "outputs: {history: {every: 0.005}}\n" +
          more + "cuts:\n" + cuts;
 }
@@ -54,8 +53,9 @@ TEST_F(CutsOfScene, WhatCannotBeIsRefusedWithItsPlace)
 
 TEST_F(CutsOfScene, GroupsThatAreNoCutAreRefused)
 {
-  EXPECT_THAT(check("  - {on: jointt}\n").err,
-              HasSubstr("block.yaml:13:5: error: cuts[0].on: the mesh has no facet group \"jointt\" \xE2\x80\x94 did you mean \"joint\"?\n"));
+  EXPECT_THAT(
+      check("  - {on: jointt}\n").err,
+      HasSubstr("block.yaml:13:5: error: cuts[0].on: the mesh has no facet group \"jointt\" \xE2\x80\x94 did you mean \"joint\"?\n"));
   EXPECT_THAT(check("  - {on: joint}\n  - {on: y_min}\n").err,
               HasSubstr("block.yaml:14:5: error: cuts[1].on: 8 of the 8 facets of \"y_min\" lie on the boundary of the mesh: a cut goes "
                         "through the inside, with cells on both of its sides\n"));
@@ -73,6 +73,22 @@ TEST_F(CutsOfScene, WhatIsNotSupportedIsRefusedByName)
   EXPECT_THAT(outcome.err, HasSubstr("error: boundaries[0]: absorbing boundaries and cuts"));
   write("two.yaml", block("  - {on: joint}\n", "contacts: [{between: [all, other]}]\n"));
   EXPECT_THAT(talus("check two.yaml").err, HasSubstr("error: cuts: cuts have one velocity field"));
+}
+
+TEST_F(CutsOfScene, ATractionOnACutIsRefused)
+{
+  write("block.yaml", block("  - {on: joint}\n", "", "time: {end: 0.02}", "0", "{type: traction, on: joint, traction: [0, 1]}"));
+  EXPECT_THAT(talus("check block.yaml").err, HasSubstr("loads[1].traction: \"joint\" is a cut, and a traction would push both"));
+}
+
+TEST_F(CutsOfScene, APressureInACutPushesItsSidesApart)
+{
+  write("block.yaml", block("  - {on: joint}\n", "boundaries: [{type: fixed, on: y_min}]\n", "time: {end: 0.02}", "0",
+                            "{type: traction, on: joint, pressure: 5.0e4}"));
+  ASSERT_EQ(talus("run block.yaml --out results --quiet").code, 0);
+  const HistoryTable table = history("results");
+  EXPECT_GT(last(table, "load_work"), 100);
+  EXPECT_EQ(last(table, "cut_joint_y"), 0);
 }
 
 TEST_F(CutsOfScene, CutsAreListedAndHaveColumns)
