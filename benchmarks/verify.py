@@ -38,6 +38,7 @@ CASES = [
     "sliding_block",
     "colliding_disks",
     "contact",
+    "cut",
     "cantilever",
     "slope_failure_2d",
     "slope_failure_3d",

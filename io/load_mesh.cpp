@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/word_match.hpp"
 #include "io/mesh/cell_count.hpp"
 #include "io/mesh/gmsh_plugin.hpp"
 #include "io/mesh/gmsh_read.hpp"
@@ -144,9 +145,36 @@ Mesh<D> load_mesh(const MeshSpec& spec, const std::filesystem::path& directory)
   });
 }
 
+template <int D>
+Mesh<D> load_mesh(const Scene& scene, const std::filesystem::path& directory)
+{
+  Mesh<D> mesh = load_mesh<D>(scene.mesh, directory);
+  std::vector<SceneError> errors;
+  std::vector<std::string> groups;
+  const auto add = [&](std::size_t cut, std::string message) {
+    SourceLocation where = scene.cuts[cut].where;
+    where.path += ".on";
+    errors.push_back({where, std::move(message), {}});
+  };
+  const std::vector<std::string> known = mesh.facet_set_names();
+  for (std::size_t k = 0; k < scene.cuts.size(); ++k) {
+    if (const std::string& on = groups.emplace_back(scene.cuts[k].on); std::ranges::find(known, on) == known.end())
+      add(k, fmt::format("the mesh has no facet group \"{}\"{}", on, suggestion(on, known)));
+  }
+  try {
+    if (errors.empty())
+      return Mesh<D>(std::move(mesh), groups);
+  } catch (const CutError& what) {
+    add(what.cut, what.what());
+  }
+  throw SceneErrors(std::move(errors));
+}
+
 template MeshData<2> make_mesh<2>(const MeshSpec&, const std::filesystem::path&);
 template MeshData<3> make_mesh<3>(const MeshSpec&, const std::filesystem::path&);
 template Mesh<2> load_mesh<2>(const MeshSpec&, const std::filesystem::path&);
 template Mesh<3> load_mesh<3>(const MeshSpec&, const std::filesystem::path&);
+template Mesh<2> load_mesh<2>(const Scene&, const std::filesystem::path&);
+template Mesh<3> load_mesh<3>(const Scene&, const std::filesystem::path&);
 
 }  // namespace talus

@@ -21,4 +21,9 @@ MeshData<D> make_mesh(const MeshSpec& spec, const std::filesystem::path& directo
 template <int D>
 Mesh<D> load_mesh(const MeshSpec& spec, const std::filesystem::path& directory);
 
+/// The mesh of a scene, with nodes doubled along its cuts.  Throws SceneErrors at the position of a cut whose group does not exist or is
+/// no cut.
+template <int D>
+Mesh<D> load_mesh(const Scene& scene, const std::filesystem::path& directory);
+
 }  // namespace talus

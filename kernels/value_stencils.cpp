@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernels/node_operators.hpp"
 
@@ -106,6 +107,13 @@ MaxentValues maxent_values(const Mesh<D>& mesh, Real alpha)
   for (const Facet facet : mesh.boundary_facets())
     for (const Index v : mesh.nodes_of(facet))
       facets[static_cast<std::size_t>(v)].push_back(facet);
+  // A side of a cut is a boundary too; its tips are neighbours along it, but have cells all around.
+  std::vector<std::size_t> bounding(facets.size(), std::numeric_limits<std::size_t>::max());
+  for (const Index v : mesh.cuts().tips)
+    bounding[static_cast<std::size_t>(v)] = facets[static_cast<std::size_t>(v)].size();
+  for (const Facet facet : mesh.cuts().facets)
+    for (const Index v : mesh.nodes_of(facet))
+      facets[static_cast<std::size_t>(v)].push_back(facet);
 
   MaxentValues values;
   values.S.assign(mesh.ring_of_node().item.size(), 0);
@@ -114,7 +122,8 @@ MaxentValues maxent_values(const Mesh<D>& mesh, Real alpha)
     if (!mesh.is_whole(n))
       return;  // computed by another rank
     const RingOf<D> ring(mesh, n);
-    const auto& here = facets[static_cast<std::size_t>(n)];
+    std::vector<Facet> here = facets[static_cast<std::size_t>(n)];
+    here.resize(std::min(here.size(), bounding[static_cast<std::size_t>(n)]));
     const auto along = directions_along(mesh, here);
     Eigen::MatrixXd y(along.cols(), static_cast<Index>(ring.r.size()));
     std::vector<Real> prior(ring.r.size());

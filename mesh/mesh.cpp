@@ -154,6 +154,7 @@ Mesh<D>::Mesh(const Mesh& whole, std::span<const Index> cells)
   for (const Facet f : whole.boundary_facets_)
     if (new_cell[f.cell] != none)
       boundary_facets_.push_back({new_cell[f.cell], f.local});
+  take_cuts(whole, new_cell, new_node);
   take_sets(whole, new_cell, new_node);
 }
 
@@ -267,11 +268,8 @@ void Mesh<D>::take_sets(const Mesh& whole, std::span<const Index> new_cell, std:
     std::vector<Facet>& facets = facet_sets_[name];
     std::size_t n_boundary = 0;
     for (Facet f : members) {
-      const Index across = whole.neighbours_[f.cell][f.local];
-      if (new_cell[f.cell] == none && across != none) {
-        const auto& back = whole.neighbours_[across];
-        f = {across, static_cast<Index>(std::ranges::find(back, f.cell) - back.begin())};
-      }
+      if (new_cell[f.cell] == none && whole.neighbours_[f.cell][f.local] != none)
+        f = whole.back(f);
       if (new_cell[f.cell] == none)
         continue;
       facets.push_back({new_cell[f.cell], f.local});
@@ -331,7 +329,7 @@ std::optional<std::vector<Index>> Mesh<D>::node_set(std::string_view name) const
     for (const Index n : nodes->second)
       member[n] = 1;
   if (facets != facet_sets_.end())
-    for (const Facet f : facets->second)
+    for (const Facet f : both_sides_of_cuts(facets->second))
       for (const Index n : nodes_of(f))
         member[n] = 1;
   if (cells != cell_sets_.end())

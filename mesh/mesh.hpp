@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,31 @@ struct Facet {
   Index cell;
   Index local;
   friend bool operator==(const Facet&, const Facet&) = default;
+};
+
+/// A node of a cut and its twin, which lies at the same place and belongs to the cells on the other side.
+template <int D>
+struct NodePair {
+  Index first, second;
+  Index cut;     ///< number of the cut
+  Vec<D> area;   ///< of the facets of the cut, shared evenly among their nodes; from the first side to the second [m^(D-1)]
+  Real measure;  ///< the same without direction [m^(D-1)]
+};
+
+/// Groups of facets inside a mesh whose nodes are doubled, so that each side has its own.  Nodes at the border of a cut inside the mesh, its
+/// tips, stay single.
+template <int D>
+struct MeshCuts {
+  std::vector<NodePair<D>> pairs;  ///< ascending in the first node
+  std::vector<Facet> facets;       ///< ascending; each facet twice, as one of both cells
+  std::vector<Index> tips;         ///< ascending
+};
+
+/// What is wrong with one of the cuts that are asked for.
+class CutError : public std::invalid_argument {
+ public:
+  CutError(std::size_t number, const std::string& what) : std::invalid_argument(what), cut(number) {}
+  std::size_t cut;  ///< number of the cut
 };
 
 /// Mesh data from a reader or generator: numbers in any order, groups by name.
@@ -46,6 +72,10 @@ class Mesh {
   /// `boundary_facets` and `on_boundary` refer to the boundary of the whole, not to the cut.  Every named set exists, with its members in
   /// the part; an interior facet is listed with a cell of the part.
   Mesh(const Mesh& whole, std::span<const Index> cells);
+  /// The mesh `uncut` with nodes doubled along facet groups inside it, whose names are `cuts`.  Stars and rings of nodes end at a cut;
+  /// neighbours of cells are as before.  The first side of a piece of a cut is that from which its area vector points to +x, +y or +z, by
+  /// the largest component; of a closed piece it is the inside.  Throws CutError for groups that are no cut.
+  Mesh(Mesh uncut, std::span<const std::string> cuts);
 
   Index n_nodes() const noexcept { return static_cast<Index>(nodes_.size()); }
   Index n_cells() const noexcept { return static_cast<Index>(cells_.size()); }
@@ -76,6 +106,10 @@ class Mesh {
   /// Nodes that share a cell with each node, including itself, ascending.
   const Csr& ring_of_node() const noexcept { return ring_of_node_; }
   std::span<const Facet> boundary_facets() const noexcept { return boundary_facets_; }
+  const MeshCuts<D>& cuts() const noexcept { return cuts_; }
+  Facet back(Facet f) const noexcept;  ///< the same facet inside the mesh, seen from its other cell
+  /// With facets of cuts from both sides: each is followed by the same facet of its other cell.
+  std::vector<Facet> both_sides_of_cuts(std::span<const Facet> facets) const;
   bool on_boundary(Facet f) const noexcept;  ///< false where a larger mesh was cut
   bool on_boundary(Index n) const noexcept { return on_boundary_[static_cast<std::size_t>(n)] != 0; }
 
@@ -102,6 +136,7 @@ class Mesh {
   void measure();
   void take_sets(const MeshData<D>& data, std::span<const Index> new_cell, std::span<const Index> new_node);
   void take_sets(const Mesh& whole, std::span<const Index> new_cell, std::span<const Index> new_node);
+  void take_cuts(const Mesh& whole, std::span<const Index> new_cell, std::span<const Index> new_node);
 
   std::vector<Vec<D>> nodes_;
   std::vector<Cell> cells_;
@@ -112,6 +147,7 @@ class Mesh {
   std::vector<std::uint8_t> cut_;  ///< part of a mesh: whether a node lies on the cut
   std::vector<Facet> boundary_facets_;
   std::vector<std::uint8_t> on_boundary_;
+  MeshCuts<D> cuts_;
   Real largest_edge_;
   Vec<D> low_, high_;
   std::optional<MapFrame> map_;

@@ -31,6 +31,18 @@ std::vector<int> rings_from(const Mesh<D>& mesh, std::span<const int> rank_of_bl
   std::vector<Index> reached = nodes_in_use<D>(mesh.cells(), own, mesh.n_nodes());
   for (const Index n : reached)
     distance[n] = 0;
+  // Particles pass through cuts, and a node and its twin act on each other: both are as far away.
+  std::vector<Index> twin(mesh.cuts().pairs.empty() ? 0 : static_cast<std::size_t>(mesh.n_nodes()), none);
+  for (const NodePair<D>& pair : mesh.cuts().pairs)
+    twin[pair.first] = pair.second, twin[pair.second] = pair.first;
+  const auto add_twins = [&](std::vector<Index>& nodes, int ring) {
+    for (std::size_t i = 0, count = twin.empty() ? 0 : nodes.size(); i < count; ++i)
+      if (const Index n = twin[nodes[i]]; n != none && distance[n] == out_of_reach) {
+        distance[n] = ring;
+        nodes.push_back(n);
+      }
+  };
+  add_twins(reached, 0);
   for (int ring = 1; ring <= farthest && !reached.empty(); ++ring) {
     next.clear();
     for (const Index n : reached)
@@ -39,6 +51,7 @@ std::vector<int> rings_from(const Mesh<D>& mesh, std::span<const int> rank_of_bl
           distance[m] = ring;
           next.push_back(m);
         }
+    add_twins(next, ring);
     std::swap(reached, next);
   }
   return distance;

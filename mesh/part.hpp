@@ -42,7 +42,7 @@ struct Part {
 };
 
 /// Holds the blocks of `rank` and every block with a cell within `rings` rings of one of their cells: ring 1 shares a node with them,
-/// ring 2 a node with ring 1.  Linear in the cells of the whole mesh.  Throws std::invalid_argument unless each block has a rank.
+/// ring 2 a node with ring 1; a node and its twin at a cut count as one.  Linear in the cells of the whole mesh.  Throws std::invalid_argument unless each block has a rank.
 template <int D>
 Part<D> cut(const Mesh<D>& whole, std::span<const int> rank_of_block, int rank, int rings);
 

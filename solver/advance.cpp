@@ -41,6 +41,13 @@ void lump_small_masses(Model<D>& m)
     field.small_mass_nodes.lump(m.problem.mesh, m.problem.own, field.nodes);
 }
 
+/// Unites nodes of cuts with their twins while these are tied.
+template <int D>
+void tie_cuts(Model<D>& m, Real dt)
+{
+  m.work.cuts.tie(m.state.clock.time, m.state.clock.lag + dt / 2, m.problem.own, m.work.fields.front().nodes);
+}
+
 /// Integrates v <- v + (lag + dt/2) (f/m + g).
 template <int D>
 void integrate_momentum(Model<D>& m, Real dt)
@@ -60,12 +67,13 @@ void apply_boundary_conditions(Model<D>& m, const Kick& kick, Real dt)
   }
 }
 
-/// Exchanges impulses where bodies with velocity fields of their own touch.
+/// Exchanges impulses where bodies with velocity fields of their own touch, and between the sides of cuts.
 template <int D>
 void apply_contacts(Model<D>& m, const Kick& kick)
 {
   m.work.contact.find(m.problem.mesh, m.problem.own, *m.work.strips, m.work.fields);
   m.work.contact.act(kick, m.state.boundary, m.work.fields, m.work.sums.at_nodes);
+  m.work.cuts.act(m.problem.mesh, kick, m.problem.own, *m.work.strips, m.state.boundary, m.work.fields.front().nodes, m.work.sums.at_nodes);
 }
 
 /// Exchanges impulses of rigid bodies with material, then with each other and with walls.
@@ -128,6 +136,7 @@ void record_node_sums(Model<D>& m)
       add_ranges(blocks, work.sums.work_on_mesh, [&](Index n) { return surface_work(nodes, n); });
   }
   work.contact.add_sums(problem.mesh, work.fields, work.sums.contacts);
+  work.cuts.add_sums(problem.mesh, problem.own, work.fields.front().nodes, std::span(work.sums.contacts).last(problem.cuts.size()));
   work.rigid.add_sums(problem.mesh, state.rigid, work.fields, work.sums.rigid);
 }
 
@@ -252,7 +261,8 @@ void make_step(Model<D>& m, Real dt)
   watch.lap(state.timings.scatter);
   transfer.assemble_nodes(m);  //  4
   apply_nodal_loads(m);
-  lump_small_masses(m);                    //  5
+  lump_small_masses(m);  //  5
+  tie_cuts(m, dt);
   integrate_momentum(m, dt);               //  6
   apply_boundary_conditions(m, kick, dt);  //  7
   apply_contacts(m, kick);

@@ -157,7 +157,7 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
 {
   StopWatch watch;
   Real preparing = 0;
-  auto mesh = load_mesh<D>(scene.mesh, folder_of(scene));
+  auto mesh = load_mesh<D>(scene, folder_of(scene));
   auto setup = set_up(scene, mesh);
   fit_threads(threads_asked, scene, setup.n_particles);
   watch.lap(preparing);

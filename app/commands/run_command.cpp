@@ -50,7 +50,7 @@ class Run {
 
   void operator()()
   {
-    auto mesh = load_mesh<D>(scene_.mesh, folder_of(scene_));
+    auto mesh = load_mesh<D>(scene_, folder_of(scene_));
     watch_.lap(phases_.mesh);
     auto setup = set_up(scene_, mesh, world());
     watch_.lap(phases_.seeding);
@@ -286,7 +286,7 @@ class Run {
   {
     const auto whole_mesh = [this, mesh_digest, &traps] {
       traps.reset();  // traps do not apply to meshing
-      Mesh<D> again = load_mesh<D>(scene_.mesh, folder_of(scene_));
+      Mesh<D> again = load_mesh<D>(scene_, folder_of(scene_));
       traps.emplace();
       if (digest(again) != mesh_digest)
         throw EnvironmentError("the mesh is not the one that the run began with: its file has changed since");

@@ -65,7 +65,7 @@ struct ReactionNow {
 };
 template <int D>
 struct ContactNow {
-  Vec<D> force;         ///< on the first body [N]
+  Vec<D> force;         ///< on the first body or side [N]
   Real friction, loss;  ///< [J]
 };
 template <int D>
@@ -168,6 +168,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     add(reaction_columns(), wall.name);
   for (const ContactLaw& contact : start.problem.contacts.laws)
     add(contact_columns(), contact.name());
+  for (const CutLaw& cut : start.problem.cuts)
+    add(cut_columns(), cut.group);
   for (const RigidBody<D>& rigid : start.problem.rigid.bodies)
     add(rigid_columns(), rigid.name);
   for (const PointSpec& point : spec.points)

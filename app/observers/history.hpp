@@ -30,7 +30,7 @@ struct HistoryState {
   std::vector<std::int64_t> followed;  ///< id of the particle of each point
   std::vector<Vec<D>> impulse;         ///< impulse of each wall at the previous row [N s]
   std::vector<Vec3> angular;           ///< moment of this impulse about the origin [N m s]
-  std::vector<Vec<D>> contact;         ///< impulse of each contact at the previous row [N s]
+  std::vector<Vec<D>> contact;         ///< impulse of each contact, then of each cut, at the previous row [N s]
   std::vector<RigidSums<D>> rigid;     ///< of each rigid body at the previous row
   std::vector<BodyImpulse<D>> given;   ///< impulse on each body of the history at the previous row
   Real time = 0;                       ///< time of the previous row [s]

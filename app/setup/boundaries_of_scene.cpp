@@ -89,7 +89,7 @@ class BoundaryBuilder {
   void add_on_facets(const std::string& name, const typename C::Options& options, const std::vector<Facet>& group,
                      ConditionSetup<D>& made_from)
   try {
-    const std::vector<Facet> facets = has_particles_.orient_facets(group);
+    const std::vector<Facet> facets = mesh_.both_sides_of_cuts(has_particles_.orient_facets(group));
     made_from.facets = facets;
     made_from.holder_of = [&](Index node) { return all_.holder_of(node); };
     made_from.column_beside = [&] { return column_beside<D>(mesh_, facets, up_, setup_.state.particles, setup_.state.materials, ranks_); };
@@ -100,7 +100,7 @@ class BoundaryBuilder {
     if (!options.acts_in(stage_))
       return all_.add({.name = name, .kind = std::move(kind)});
     if constexpr (ActsOnPlanes<C>)
-      if (const Index inside = has_particles_.inside_material(group); inside > 0 && !C::two_sided)
+      if (const Index inside = has_particles_.inside_material(group); inside > 0 && facets.size() == group.size() && !C::two_sided)
         setup_.warnings.push_back(fmt::format(
             "{}: {} of the {} facets of \"{}\" have material on both sides{}: a {} wall holds that on one of them, and which is not said",
             to_string(options.where), inside, group.size(), options.on, stage_.empty() ? "" : fmt::format(" in stage \"{}\"", stage_),

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -102,6 +104,30 @@ Contacts contacts_of(const Scene& scene, const std::vector<Body>& bodies, SceneE
 std::string describe(const ContactLaw& law)
 {
   std::string text = fmt::format("contact of \"{}\" and \"{}\": friction {:.6g}", law.first_body, law.second_body, law.friction);
+  if (law.cohesion > 0)
+    text += fmt::format(", cohesion {:.6g} Pa", law.cohesion);
+  return text;
+}
+
+std::vector<CutLaw> cuts_of(const Scene& scene)
+{
+  std::vector<CutLaw> cuts;
+  for (const CutSpec& cut : scene.cuts)
+    cuts.push_back({.group = cut.on,
+                    .friction = cut.friction,
+                    .cohesion = cut.cohesion,
+                    .tied_until = cut.tied ? std::numeric_limits<Real>::infinity() : cut.tied_until.value_or(0)});
+  return cuts;
+}
+
+std::string describe(const CutLaw& law)
+{
+  std::string text = fmt::format("cut \"{}\": ", law.group);
+  if (std::isinf(law.tied_until))
+    return text + "tied";
+  if (law.tied_until > 0)
+    text += fmt::format("tied until {:.6g} s, then ", law.tied_until);
+  text += fmt::format("friction {:.6g}", law.friction);
   if (law.cohesion > 0)
     text += fmt::format(", cohesion {:.6g} Pa", law.cohesion);
   return text;

@@ -8,6 +8,7 @@
 #include "core/particles.hpp"
 #include "io/scene/scene.hpp"
 #include "solver/contact/contacts.hpp"
+#include "solver/contact/cut_law.hpp"
 
 namespace talus {
 
@@ -17,6 +18,10 @@ Contacts contacts_of(const Scene& scene, const std::vector<Body>& bodies, SceneE
 
 /// In words.
 std::string describe(const ContactLaw& law);
+
+/// What acts between the sides of the cuts of a scene, in its order.
+std::vector<CutLaw> cuts_of(const Scene& scene);
+std::string describe(const CutLaw& law);
 
 /// An error for every contact whose bodies overlap at the start: cells hold more than they have room for.  Every rank has to ask.
 template <int D>

@@ -92,7 +92,12 @@ class LoadBuilder {
     if (spec.water_level)
       return errors_.add(spec.where, "water_level",
                          fmt::format("\"{}\" is a facet group: water acts on sides of bodies that fill a shape, BODY:SIDE", spec.on));
-    const std::vector<Facet> facets = at_start_.orient_facets(*found);
+    const std::vector<Facet> facets = mesh_.both_sides_of_cuts(at_start_.orient_facets(*found));
+    if (!spec.pressure && facets.size() > found->size())
+      return errors_.add(spec.where, "traction",
+                         fmt::format("\"{}\" is a cut, and a traction would push both of its sides the same way: give a pressure, which "
+                                     "pushes them apart",
+                                     spec.on));
     Real area = 0, loaded = 0;
     for (const Facet& facet : facets) {
       area += mesh_.area_vector(facet).norm();

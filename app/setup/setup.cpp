@@ -254,6 +254,9 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.conditions.contacts = contacts_of(scene, setup.state.bodies, errors, setup.warnings);
   for (const ContactLaw& law : setup.conditions.contacts.laws)
     setup.notes.push_back(describe(law));
+  setup.conditions.cuts = cuts_of(scene);
+  for (const CutLaw& law : setup.conditions.cuts)
+    setup.notes.push_back(describe(law));
   add_rigid_bodies(scene, mesh, ranks, errors, setup);
   warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, setup.conditions.contacts, ranks,
                       setup.warnings);

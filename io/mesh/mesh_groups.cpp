@@ -56,6 +56,19 @@ FacetMatch<D> match_of(const MeshData<D>& data)
   return match_facets<D>(data.cells, cells_at_nodes<D>(data.cells, static_cast<Index>(data.nodes.size())));
 }
 
+/// The facets between two cells.
+template <int D>
+std::vector<FacetNodes<D>> inside_of(const MeshData<D>& data)
+{
+  const FacetMatch<D> match = match_of(data);
+  std::vector<FacetNodes<D>> facets;
+  for (Index c = 0; c < static_cast<Index>(data.cells.size()); ++c)
+    for (int a = 0; a <= D; ++a)
+      if (match.neighbours[c][a] > c)
+        facets.push_back(nodes_of(data, c, a));
+  return facets;
+}
+
 template <int D>
 struct Bounds {
   Vec<D> low, high;
@@ -273,15 +286,19 @@ void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups)
     const Vec<D> high = group.within ? vector_of<D>(group.within->high, "within.high", group) : all_high;
     if (data.facet_sets.contains(group.name))
       throw SceneErrors(group.where, fmt::format("the mesh has a facet group \"{}\" already", group.name));
-    const auto source = data.facet_sets.find(group.of);
-    if (source == data.facet_sets.end())
+    const auto known = data.facet_sets.find(group.of);
+    const bool all_inside = known == data.facet_sets.end() && group.of == "inside";
+    const std::vector<FacetNodes<D>> source = all_inside                       ? inside_of(data)
+                                              : known != data.facet_sets.end() ? known->second
+                                                                               : std::vector<FacetNodes<D>>{};
+    if (known == data.facet_sets.end() && !all_inside)
       throw SceneErrors(group.where,
                         fmt::format("of: the mesh has no facet group \"{}\"{}", group.of, suggestion(group.of, names(data.facet_sets))));
     if (!(low.array() <= high.array()).all())
       throw SceneErrors(group.where,
                         fmt::format("group \"{}\": within.low {} is not below within.high {}", group.name, place<D>(low), place<D>(high)));
     std::vector<FacetNodes<D>> inside;
-    std::ranges::copy_if(source->second, std::back_inserter(inside), [&](const FacetNodes<D>& nodes) {
+    std::ranges::copy_if(source, std::back_inserter(inside), [&](const FacetNodes<D>& nodes) {
       return std::ranges::all_of(nodes, [&](Index n) {
         const Vec<D>& x = data.nodes[n];
         return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();

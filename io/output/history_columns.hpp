@@ -61,6 +61,17 @@ constexpr auto contact_columns()
                                      [](const auto& contact) { return contact.loss; })};
 }
 
+/// Columns of each cut, named by its group.
+constexpr auto cut_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{
+      quantity<vector>("cut_{}_", "N", "mean force on the first side since the row before", [](const auto& cut) { return cut.force; }),
+      quantity<number>("cut_friction_{}", "J", "energy lost by friction between the sides", [](const auto& cut) { return cut.friction; }),
+      quantity<number>("cut_loss_{}", "J", "energy lost where nodes of the sides meet, a part of transfer_loss",
+                       [](const auto& cut) { return cut.loss; })};
+}
+
 /// Columns of each rigid body.
 constexpr auto rigid_columns()
 {

@@ -66,6 +66,7 @@ struct Scene {
   std::optional<WaterSpec> water;
   std::vector<LoadSpec> loads;
   std::vector<ContactSpec> contacts;
+  std::vector<CutSpec> cuts;
   std::vector<RigidSpec> rigid;
   std::vector<BoundaryOptions> boundaries;
   std::vector<StageSpec> stages;
@@ -97,6 +98,8 @@ struct Scene {
         optional_list("loads", &Scene::loads, "forces"),
         optional_list("contacts", &Scene::contacts,
                       "bodies that touch, slide and part, each with velocities of its own; without, all bodies stick to each other"),
+        optional_list("cuts", &Scene::cuts,
+                      "facet groups inside the mesh whose sides slide and part: faults, joints, sheet piles; each has its own nodes there"),
         optional_list("rigid", &Scene::rigid,
                       "bodies that do not deform, free or with a given motion; they touch material, walls and each other"),
         optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),

@@ -34,8 +34,10 @@ struct GroupSpec {
   {
     return std::tuple{
         required("name", &GroupSpec::name, any, "-", "name of the facets: boundaries and loads refer to it"),
-        optional("of", &GroupSpec::of, any, "-",
-                 "facet group to choose from: the outline of a region is region:boundary, that of the mesh boundary"),
+        optional(
+            "of", &GroupSpec::of, any, "-",
+            "facet group to choose from: the outline of a region is region:boundary, that of the mesh boundary, and all facets between "
+            "two cells are inside"),
         group("within", &GroupSpec::within, "facets with all corners in this box (give it some slack)"),
         optional("facing", &GroupSpec::facing, any, "-",
                  "facets whose normal, out of the mesh or out of the region whose outline they are, points into this direction"),
@@ -93,7 +95,7 @@ struct MeshSpec {
         optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
         optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
         optional_list("groups", &MeshSpec::groups,
-                      "names for parts of the boundary or of outlines, added to those of the mesh; x_min, x_max, y_min, ... "
+                      "names for parts of the boundary, of outlines or of the inside, added to those of the mesh; x_min, x_max, y_min, ... "
                       "and boundary always exist"),
         group("grid", &MeshSpec::grid, "built-in box"),
         group("terrain", &MeshSpec::terrain, "columns of cells between surfaces: ground, layers below it, air above it"),

@@ -19,6 +19,7 @@ class Rules : private SceneRuleBase {
     time();
     materials_and_bodies();
     contacts();
+    cuts();
     append(broken_rigid_rules(scene_));
     loads_and_boundaries();
     append(broken_output_rules(scene_));
@@ -176,6 +177,23 @@ class Rules : private SceneRuleBase {
       if (const auto* load = std::get_if<TractionSpec>(&scene_.loads[i]); load != nullptr && load->carried_by == Carrier::mesh)
         add(fmt::format("loads[{}].carried_by", i),
             "what the mesh carries acts on no body in particular: with contacts let particles carry it");
+  }
+
+  void cuts()
+  {
+    for (std::size_t i = 0; i < scene_.cuts.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (scene_.cuts[i].on == scene_.cuts[j].on)
+          add(fmt::format("cuts[{}].on", i), fmt::format("cuts[{}] is on \"{}\" already", j, scene_.cuts[i].on));
+    if (scene_.cuts.empty())
+      return;
+    if (!scene_.contacts.empty())
+      add("cuts", "cuts have one velocity field, and with contacts there are several: leave one out");
+    if (scene_.kernel == "projected" && scene_.projected && scene_.projected->surfaces == AtSurfaces::extended)
+      add("projected.surfaces", "extended surfaces do not know the sides of cuts: leave one out");
+    for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
+      if (has_dashpots(scene_.boundaries[i]))
+        add(fmt::format("boundaries[{}]", i), "absorbing boundaries and cuts have not been made for each other: leave one out");
   }
 
   void initial(const InitialSpec& initial)

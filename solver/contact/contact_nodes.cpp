@@ -54,15 +54,6 @@ Real surface_in_cell(const Vec<D>& first, const Vec<D>& second)
   return size > 0 ? std::max(Real{0}, std::min(second.dot(difference), -first.dot(difference)) / size) : 0;
 }
 
-/// Half the width of a particle along a unit vector [m]: the stretched half side of a cube of its initial volume.
-template <int D>
-Real half_width(const Mat3& F, Real volume0, const Vec<D>& along) noexcept
-{
-  const Mat<D> part = F.template topLeftCorner<D, D>();
-  const Real side = D == 2 ? std::sqrt(volume0) : std::cbrt(volume0);
-  return 0.5 * side * (part.transpose() * along).norm();
-}
-
 }  // namespace
 
 template <int D>
@@ -162,7 +153,7 @@ void ContactNodes<D>::sum_volumes(const Mesh<D>& mesh, const ParticleStrips<D>& 
     const Index cell = marked_[static_cast<std::size_t>(k)];
     for (std::size_t f = 0; f < volumes_.size(); ++f) {
       Corners& sum = volumes_[f][static_cast<std::size_t>(cell)].of;
-      for_each_particle_in_cell(strips, bodies_[f], cell, [&](const StripColumns<D>& columns, std::size_t p) {
+      for_each_particle_in<D>(strips, bodies_[f], cell, [&](const StripColumns<D>& columns, std::size_t p) {
         const std::array<Real, D + 1> share = mesh.barycentric(cell, columns.x.of(p));
         for (std::size_t a = 0; a <= D; ++a)
           sum[a] += share[a] * columns.volume.of(p);
@@ -268,7 +259,7 @@ void ContactNodes<D>::find_reach(const Mesh<D>& mesh, const ParticleStrips<D>& s
       const auto for_each_beside = [&](Index field, auto&& reach_of) {
         const Real beside = mesh.node_size(n) / 2;
         for (const Index c : cells)
-          for_each_particle_in_cell(strips, bodies_[static_cast<std::size_t>(field)], c,
+          for_each_particle_in<D>(strips, bodies_[static_cast<std::size_t>(field)], c,
                                     [&](const StripColumns<D>& columns, std::size_t p) {
                                       const Vec<D> arm = columns.x.of(p) - mesh.node(n);
                                       const Real along = normal.dot(arm);

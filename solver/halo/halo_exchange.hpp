@@ -26,8 +26,10 @@ enum class MessageTag : int {
   contact_cells = 11,
   contact_reach = 12,
   surfaces = 13,
-  rigid_nodes = 14,
-  rigid_touches = 15
+  cut_nodes = 14,
+  cut_reach = 15,
+  rigid_nodes = 16,
+  rigid_touches = 17
 };
 
 /// Selects the parts of a row to be sent: the whole row.

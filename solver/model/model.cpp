@@ -101,8 +101,9 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
     m.add_field();
   transfer.prepare(problem);
   work.contact.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.contacts);
-  work.sums.contacts.resize(problem.contacts.laws.size());
-  state.contacts.resize(problem.contacts.laws.size());
+  work.cuts.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.cuts);
+  work.sums.contacts.resize(problem.contacts.laws.size() + problem.cuts.size());
+  state.contacts.resize(work.sums.contacts.size());
   std::vector<std::vector<Index>> bodies_of_field(static_cast<std::size_t>(problem.contacts.n_fields));
   for (Index body = 0; body < m.n_bodies(); ++body)
     bodies_of_field[problem.contacts.field_of(body)].push_back(body);

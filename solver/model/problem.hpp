@@ -7,6 +7,7 @@
 #include "mesh/locate.hpp"
 #include "mesh/part.hpp"
 #include "solver/contact/contacts.hpp"
+#include "solver/contact/cut_law.hpp"
 #include "solver/loads/loads.hpp"
 #include "solver/loads/water.hpp"
 #include "solver/options/limit_options.hpp"
@@ -33,6 +34,7 @@ struct SceneConditions {
   Water water;
   Exits exits;
   Contacts contacts;
+  std::vector<CutLaw> cuts;  ///< by number of the cut of the mesh
   RigidScene<D> rigid;
   RunLimits limits;
 };

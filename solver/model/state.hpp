@@ -106,7 +106,7 @@ struct State {
   Real residual = 0;  ///< unbalanced force of the nodes over the loads in the last step [-]
   Real crossing = 0;  ///< shortest wave transit time of a cell with particles [s]; the stable step is proportional to it
   BoundaryConditions<D> boundary;
-  std::vector<ContactSums<D>> contacts;  ///< impulse and work of each law of contact since the start of the run
+  std::vector<ContactSums<D>> contacts;  ///< impulse and work of each law of contact, then of each cut, since the start of the run
   std::vector<RigidState<D>> rigid;      ///< of each rigid body
   std::vector<Body> bodies;
   std::vector<Material> materials;  ///< one for each body, with the same rows

@@ -7,6 +7,7 @@
 #include "materials/interface/stress_strip.hpp"
 #include "solver/boundary/velocity_field.hpp"
 #include "solver/contact/contact_nodes.hpp"
+#include "solver/contact/cut_nodes.hpp"
 #include "solver/loads/loads.hpp"
 #include "solver/rigid/rigid_nodes.hpp"
 #include "solver/state/cell_order.hpp"
@@ -29,6 +30,7 @@ struct Workspace {
 
   std::vector<VelocityField<D>> fields;  ///< one, unless bodies are in contact
   ContactNodes<D> contact;               ///< nodes at which two fields touch
+  CutNodes<D> cuts;                      ///< nodes of cuts and their twins
   RigidNodes<D> rigid;                   ///< nodes at which material touches rigid bodies
   StepSums<D> sums;                      ///< sums of the present step
   // Sums over the particles of each body in each block.

@@ -9,14 +9,6 @@ namespace {
 /// Candidates are nodes nearer than this to a body, in mean edges: particles within two rings may touch it.
 constexpr Real nearness = 3;
 
-/// Half the width of a particle along a unit vector [m]: the stretched half side of a cube of its initial volume.
-template <int D>
-Real half_width_along(const Mat3& F, Real volume0, const Vec<D>& along) noexcept
-{
-  const Mat<D> part = F.template topLeftCorner<D, D>();
-  return 0.5 * (D == 2 ? std::sqrt(volume0) : std::cbrt(volume0)) * (part.transpose() * along).norm();
-}
-
 }  // namespace
 
 template <int D>
@@ -88,11 +80,11 @@ void RigidNodes<D>::find_touching_particles(const Place& at, Index field)
   parallel_for(static_cast<Index>(marked_.size()), [&](Index k) {
     auto& touching = touching_[static_cast<std::size_t>(k)];
     touching.clear();
-    for_each_particle_in_cell(at.strips, bodies_of_field_[static_cast<std::size_t>(field)], marked_[static_cast<std::size_t>(k)],
+    for_each_particle_in<D>(at.strips, bodies_of_field_[static_cast<std::size_t>(field)], marked_[static_cast<std::size_t>(k)],
                               [&](const StripColumns<D>& columns, std::size_t p) {
                                 const Vec<D> x = columns.x.of(p);
                                 const SurfaceDistance<D> to = at.state.distance(at.shape, x);
-                                const Real gap = to.distance - half_width_along<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
+                                const Real gap = to.distance - half_width<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
                                 if (gap <= 0)
                                   touching.push_back({{gap, to.normal, x - to.distance * to.normal}, x});
                               });

@@ -6,10 +6,10 @@
 
 namespace talus {
 
-/// Sums over the nodes at which two velocity fields touch.
+/// Sums over the nodes at which two velocity fields, or the sides of a cut, touch.
 template <int D>
 struct ContactSums {
-  Vec<D> impulse = Vec<D>::Zero();  ///< on the first field [N s]
+  Vec<D> impulse = Vec<D>::Zero();  ///< on the first field or side [N s]
   Vec3 angular = Vec3::Zero();      ///< its moment about the origin [N m s]
   Real
       pressure{};  ///< work of impulses along the normal on both fields [J], as force times the mean of old and new velocity: what impacts lose
@@ -62,7 +62,7 @@ struct StepSums {
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]
   ExactSums<Real> remap;                                      ///< see EnergyLedger [J]
   ExactSums<Real> particles;                                  ///< number of particles
-  std::vector<ExactSums<ContactSums<D>>> contacts;            ///< by law of contact
+  std::vector<ExactSums<ContactSums<D>>> contacts;            ///< by law of contact, then by cut
   std::vector<ExactSums<RigidSums<D>>> rigid;                 ///< by rigid body
   /// Digits in use of these sums and of the impulses of boundary conditions, kept from step to step.
   Digits digits;

@@ -313,6 +313,7 @@ class TransferOf final : public Transfer<D> {
     for (Rows& of : fields_)
       find_remapped_velocity(m, of, mid);
     m.work.contact.hold(mid, m.state.boundary, m.work.fields);
+    m.work.cuts.hold(mid, m.problem.own, m.state.boundary, m.work.fields.front().nodes);
     m.work.rigid.hold(mid, m.state.boundary, m.state.rigid, m.work.fields);
     for (Rows& of : fields_)
       send_remapped_velocity(m, of, mid);

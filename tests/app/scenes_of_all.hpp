@@ -238,6 +238,21 @@ inline std::vector<SceneCase> scenes_of_all()
   SceneParts contacts_tied = two_materials;
   contacts_tied.more = "kernel: umls\ncontacts:\n  - {between: [high, low], friction: 0.3}\n  - {between: [right, low], tied: true}\n";
   all.push_back({"contacts_umls", contacts_tied});
+  SceneParts cuts = two_materials;
+  cuts.dimension =
+      "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [6, 6]}, groups: [\n"
+      "  {name: level, of: inside, within: {low: [-1, 0.99], high: [1.34, 1.01]}},\n"
+      "  {name: upright, of: inside, within: {low: [0.99, -1], high: [1.01, 0.68]}}]}\n";
+  cuts.bodies =
+      "bodies:\n"
+      "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, velocity: [3, -1]}\n"
+      "  - {name: high, material: other, shape: {type: box, low: [0, 1], high: [1.4, 1.6]}, particles_per_cell: 4, velocity: [1, -2]}\n"
+      "  - {name: right, material: stuff, shape: {type: box, low: [1, 0], high: [2, 1]}, particles_per_cell: 3}\n";
+  cuts.more = "cuts:\n  - {on: level, friction: 0.3, cohesion: 100}\n  - {on: upright, friction: 0.1, tied_until: 0.02}\n";
+  all.push_back({"cuts", cuts});
+  cuts.more = "kernel: umls\ntransfer: {scheme: apic}\ncuts:\n  - {on: level, friction: 5}\n  - {on: upright, tied: true}\n";
+  cuts.boundaries = "boundaries: [{type: roller, on: level}, {type: roller, on: y_min}, {type: friction, on: upright, coefficient: 0.2}]\n";
+  all.push_back({"cuts_with_walls_umls", cuts});
   SceneParts rigid;
   rigid.more =
       "rigid:\n  - {name: disk, shape: {type: sphere, centre: [1.6, 0.32], radius: 0.3}, density: 1500, friction: 0.4, velocity: [-3, 0], "
@@ -275,6 +290,14 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"two_materials_solid", two_in_3d});
   two_in_3d.more = "kernel: linear\ncontacts: [{between: [low, high], friction: 0.3}]\n";
   all.push_back({"contacts_solid", two_in_3d});
+  SceneParts cuts_in_3d = two_in_3d;
+  cuts_in_3d.dimension =
+      "dimension: 3\nmesh: {grid: {low: [0, 0, 0], high: [2, 2, 1], cells: [4, 4, 2]}, groups: [\n"
+      "  {name: level, of: inside, within: {low: [-1, 0.99, -1], high: [1.6, 1.01, 2]}}]}\n";
+  cuts_in_3d.more = "cuts: [{on: level, friction: 0.3, cohesion: 50}]\n";
+  all.push_back({"cuts_solid", cuts_in_3d});
+  cuts_in_3d.more = "kernel: linear\ntransfer: {scheme: flip}\ncuts: [{on: level, friction: 0.3, tied_until: 0.02}]\n";
+  all.push_back({"cuts_solid_linear", cuts_in_3d});
   two_in_3d.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended_solid", two_in_3d});
   SceneParts rigid_in_3d = in_3d;

@@ -87,7 +87,7 @@ class LevelErrors {
 template <int D>
 void measure(const ConvergePlan& plan, const Scene& scene, ConvergeLevel& level)
 {
-  const Mesh<D> mesh = load_mesh<D>(scene.mesh, folder_of(scene));
+  const Mesh<D> mesh = load_mesh<D>(scene, folder_of(scene));
   level.mesh_digest = digest_text(digest(mesh));
   level.cells = mesh.n_cells();
   Real volume = 0;

@@ -90,7 +90,7 @@ AtRest measured(const FosPlan& plan)
   for (const LoadSpec& load : scene.loads)
     if (const auto* gravity = std::get_if<GravitySpec>(&load))
       before.gravity = Eigen::Map<const Eigen::VectorXd>(gravity->acceleration.data(), std::ssize(gravity->acceleration)).norm();
-  const Mesh<D> mesh = load_mesh<D>(scene.mesh, folder_of(scene));
+  const Mesh<D> mesh = load_mesh<D>(scene, folder_of(scene));
   const Setup<D> setup = set_up(scene, mesh);
   const Vec<D> up = upright_of(scene).template head<D>();
   Real low = std::numeric_limits<Real>::infinity(), high = -low;

@@ -119,7 +119,7 @@ void check_on_mesh(const SweepPlan& plan, const std::vector<SweepCase*>& cases, 
   std::optional<Mesh<D>> mesh;
   try {
     const Scene scene = scene_of_case(plan, *cases.front());
-    mesh.emplace(load_mesh<D>(scene.mesh, folder_of(scene)));
+    mesh.emplace(load_mesh<D>(scene, folder_of(scene)));
   } catch (const SceneErrors& e) {
     for (const SweepCase* one : cases)
       errors.add(*one, e);
