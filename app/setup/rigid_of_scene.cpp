@@ -149,6 +149,8 @@ class RigidBuilder {
       return errors_.add(spec.where, key, e.what());
     } catch (const SceneErrors& e) {
       return errors_.add(spec.where, key, e);
+    } catch (const EnvironmentError& e) {  // there is no such file
+      return errors_.add(spec.where, key, e.what());
     }
     body.mass = spec.mass.value_or(spec.density.value_or(0) * solid.volume);
     body.inertia = body.mass / solid.volume * solid.inertia;

@@ -259,13 +259,12 @@ void ContactNodes<D>::find_reach(const Mesh<D>& mesh, const ParticleStrips<D>& s
       const auto for_each_beside = [&](Index field, auto&& reach_of) {
         const Real beside = mesh.node_size(n) / 2;
         for (const Index c : cells)
-          for_each_particle_in<D>(strips, bodies_[static_cast<std::size_t>(field)], c,
-                                    [&](const StripColumns<D>& columns, std::size_t p) {
-                                      const Vec<D> arm = columns.x.of(p) - mesh.node(n);
-                                      const Real along = normal.dot(arm);
-                                      if (arm.squaredNorm() - along * along <= beside * beside)
-                                        reach_of(along, half_width<D>(columns.F.of(p), columns.volume0.of(p), normal));
-                                    });
+          for_each_particle_in<D>(strips, bodies_[static_cast<std::size_t>(field)], c, [&](const StripColumns<D>& columns, std::size_t p) {
+            const Vec<D> arm = columns.x.of(p) - mesh.node(n);
+            const Real along = normal.dot(arm);
+            if (arm.squaredNorm() - along * along <= beside * beside)
+              reach_of(along, half_width<D>(columns.F.of(p), columns.volume0.of(p), normal));
+          });
       };
       for_each_beside(law.first, [&](Real along, Real half) { reach.first = std::max(reach.first, along + half); });
       for_each_beside(law.second, [&](Real along, Real half) { reach.second = std::min(reach.second, along - half); });

@@ -81,13 +81,13 @@ void RigidNodes<D>::find_touching_particles(const Place& at, Index field)
     auto& touching = touching_[static_cast<std::size_t>(k)];
     touching.clear();
     for_each_particle_in<D>(at.strips, bodies_of_field_[static_cast<std::size_t>(field)], marked_[static_cast<std::size_t>(k)],
-                              [&](const StripColumns<D>& columns, std::size_t p) {
-                                const Vec<D> x = columns.x.of(p);
-                                const SurfaceDistance<D> to = at.state.distance(at.shape, x);
-                                const Real gap = to.distance - half_width<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
-                                if (gap <= 0)
-                                  touching.push_back({{gap, to.normal, x - to.distance * to.normal}, x});
-                              });
+                            [&](const StripColumns<D>& columns, std::size_t p) {
+                              const Vec<D> x = columns.x.of(p);
+                              const SurfaceDistance<D> to = at.state.distance(at.shape, x);
+                              const Real gap = to.distance - half_width<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
+                              if (gap <= 0)
+                                touching.push_back({{gap, to.normal, x - to.distance * to.normal}, x});
+                            });
   });
 }
 
