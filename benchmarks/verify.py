@@ -38,6 +38,7 @@ CASES = [
     "sliding_block",
     "colliding_disks",
     "contact",
+    "contact_bodies",
     "cut",
     "cantilever",
     "slope_failure_2d",

@@ -205,14 +205,15 @@ template <int D>
 std::string FacetSurface<D>::fault() const
 {
   std::map<std::array<Index, D - 1>, int> borders;  // how often each is passed in one sense minus the other
-  for (std::size_t f = 0; f < facets_.size(); ++f)
+  const auto pass = [&](const std::array<Index, D - 1>& border, int sense) { borders.try_emplace(border, 0).first->second += sense; };
+  for (const auto& facet : facets_)
     if constexpr (D == 2) {
-      --borders[{facets_[f][0]}];
-      ++borders[{facets_[f][1]}];
+      pass({facet[0]}, -1);
+      pass({facet[1]}, 1);
     } else {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Index from = facets_[f][k], to = facets_[f][(k + 1) % 3];
-        borders[{std::min(from, to), std::max(from, to)}] += from < to ? 1 : -1;
+        const Index from = facet[k], to = facet[(k + 1) % 3];
+        pass({std::min(from, to), std::max(from, to)}, from < to ? 1 : -1);
       }
     }
   for (const auto& [border, surplus] : borders)
