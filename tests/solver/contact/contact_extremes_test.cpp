@@ -135,8 +135,8 @@ void expect_sound(Model<D>& m, Real end)
   const Found found = run(m, end);
   EXPECT_LT(found.made, 1e-3 * found.there);
   EXPECT_EQ(found.passed, 0U);
-  std::printf("  %lld steps, %zu particles, energy made %.1e and regained %.1e of %.3g J\n", static_cast<long long>(found.steps), m.state.particles.id.size(),
-              found.made / found.there, found.regained / found.there, found.there);
+  std::printf("  %lld steps, %zu particles, energy made %.1e and regained %.1e of %.3g J\n", static_cast<long long>(found.steps),
+              m.state.particles.id.size(), found.made / found.there, found.regained / found.there, found.there);
 }
 
 /// A block on the floor and another that falls on it.
