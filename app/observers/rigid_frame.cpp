@@ -10,14 +10,14 @@ namespace {
 constexpr Index around = 48;  ///< sides of a circle that is drawn
 
 template <int D>
-struct Surface {
+struct DrawnSurface {
   std::vector<Vec<D>> corners;
   std::vector<std::array<Index, 3>> triangles;
 };
 
-Surface<2> surface_of_ball(const RigidShape<2>& shape)
+DrawnSurface<2> surface_of_ball(const RigidShape<2>& shape)
 {
-  Surface<2> ball{{Vec<2>::Zero()}, {}};
+  DrawnSurface<2> ball{{Vec<2>::Zero()}, {}};
   for (Index i = 0; i < around; ++i) {
     const Real angle = 2 * std::numbers::pi * i / around;
     ball.corners.push_back(shape.radius() * Vec<2>(std::cos(angle), std::sin(angle)));
@@ -26,9 +26,9 @@ Surface<2> surface_of_ball(const RigidShape<2>& shape)
   return ball;
 }
 
-Surface<3> surface_of_ball(const RigidShape<3>& shape)
+DrawnSurface<3> surface_of_ball(const RigidShape<3>& shape)
 {
-  Surface<3> ball;
+  DrawnSurface<3> ball;
   constexpr Index rings = around / 2;
   for (Index j = 0; j <= rings; ++j)
     for (Index i = 0; i < around; ++i) {
@@ -75,7 +75,7 @@ std::vector<std::array<Index, 3>> filled(const std::vector<Vec<2>>& corners, std
   return triangles;
 }
 
-Surface<2> surface_of_facets(const FacetSurface<2>& facets)
+DrawnSurface<2> surface_of_facets(const FacetSurface<2>& facets)
 {
   std::vector<Index> next(facets.corners().size()), order;
   for (const auto& facet : facets.facets())
@@ -84,7 +84,7 @@ Surface<2> surface_of_facets(const FacetSurface<2>& facets)
     order.push_back(corner);
   return {facets.corners(), filled(facets.corners(), std::move(order))};
 }
-Surface<3> surface_of_facets(const FacetSurface<3>& facets) { return {facets.corners(), facets.facets()}; }
+DrawnSurface<3> surface_of_facets(const FacetSurface<3>& facets) { return {facets.corners(), facets.facets()}; }
 
 }  // namespace
 
@@ -97,7 +97,7 @@ Frame::MeshFile rigid_of_frame(const RunView<D>& view, std::filesystem::path fil
   for (std::size_t r = 0; r < view.state.rigid.size(); ++r) {
     const RigidState<D>& state = view.state.rigid[r];
     const RigidShape<D>& shape = *view.problem.rigid.bodies[r].shape;
-    const Surface<D> surface = shape.is_ball() ? surface_of_ball(shape) : surface_of_facets(*shape.facets());
+    const DrawnSurface<D> surface = shape.is_ball() ? surface_of_ball(shape) : surface_of_facets(*shape.facets());
     for (const Vec<D>& corner : surface.corners) {
       const Vec<D> place = state.x + state.in_scene(corner), v = state.velocity_at(place);
       for (Index d = 0; d < 3; ++d) {
