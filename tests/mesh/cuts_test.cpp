@@ -91,8 +91,9 @@ TYPED_TEST(Cuts, ACutThroughTheWholeMeshPartsItInTwo)
   Real area = 0;
   for (const NodePair<D>& pair : mesh.cuts().pairs) {
     area += pair.measure;
-    if (mesh.node(pair.first)[0] == 0)
+    if (mesh.node(pair.first)[0] == 0) {
       EXPECT_TRUE(mesh.on_boundary(pair.first) && mesh.on_boundary(pair.second));
+    }
   }
   EXPECT_NEAR(area, 1, 1e-12);
   for (const auto& cell : mesh.cells()) {
