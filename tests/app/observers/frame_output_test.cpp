@@ -40,7 +40,7 @@ class Frames : public testing::Test {
   {
     return {file, {2, {0, 4}, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, {0, 2}, {0, 1, 2, 0, 2, 3}}, {{"mass", 1, {1, 2, 3, 4}, "kg"}}};
   }
-  Frame frame(int number) const { return {number * 0.5, particles(particle_file(number)), mesh(mesh_file(number))}; }
+  Frame frame(int number) const { return {number * 0.5, particles(particle_file(number)), mesh(mesh_file(number)), {}}; }
 };
 
 TEST_F(Frames, HaveTheBytesOfFilesThatAreWrittenAtOnce)
