@@ -140,6 +140,14 @@ std::optional<std::string> reason_to_stop(Model<D>& m, const StepLimits& limits)
     return fmt::format("{} needs a step of {:.3g} s, below time.min_step = {:.3g} s", who.empty() ? "the run" : who, wanted,
                        limits.shortest);
   }
+  if (m.problem.exits.policy == OnExit::stop)
+    for (std::size_t r = 0; r < m.state.rigid.size(); ++r)
+      if (const Vec<D>& x = m.state.rigid[r].x; m.problem.rigid.bodies[r].is_free() && ((x.array() < m.problem.mesh.low().array()).any() ||
+                                                                                        (x.array() > m.problem.mesh.high().array()).any()))
+        return fmt::format(
+            "the rigid body \"{}\" has left the mesh at ({:.6g}): make the mesh larger, put a boundary condition where it "
+            "leaves, or let it go with on_exit: delete",
+            m.problem.rigid.bodies[r].name, fmt::join(x.begin(), x.end(), ", "));
   return exceeded_limit(m, Look::between_steps);
 }
 

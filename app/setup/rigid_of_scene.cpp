@@ -257,12 +257,13 @@ void check_rigid_places(const Scene& scene, Communicator& ranks, const Setup<D>&
     if (at.gap > -seen * rigid.bodies[first].shape->radius() || !known.insert({at.first, at.second}).second)
       continue;
     if (at.second == none)
-      errors.add(scene.rigid[first].where, "name",
-                 fmt::format("\"{}\" begins {:.3g} m inside a wall of the mesh", rigid.bodies[first].name, -at.gap));
+      errors.add(
+          scene.rigid[first].where, "name",
+          fmt::format("\"{}\" begins {:.3g} m inside a wall of the mesh: move it away from there", rigid.bodies[first].name, -at.gap));
     else
       errors.add(scene.rigid[static_cast<std::size_t>(at.second)].where, "name",
-                 fmt::format("\"{}\" begins {:.3g} m inside \"{}\"", rigid.bodies[static_cast<std::size_t>(at.second)].name, -at.gap,
-                             rigid.bodies[first].name));
+                 fmt::format("\"{}\" begins {:.3g} m inside \"{}\": move one of them",
+                             rigid.bodies[static_cast<std::size_t>(at.second)].name, -at.gap, rigid.bodies[first].name));
   }
 }
 

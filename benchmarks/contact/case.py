@@ -10,21 +10,27 @@ PLACES = {0.0: "quick", -0.03: "full", -0.06: "full"}  # m, left end of the room
 DISKS = {0.05: "quick", 0.025: "quick", 0.0125: "full"}
 
 
-def acceleration(friction, degrees, data):
-    """Of a rigid disk down the plane [m/s^2]."""
-    angle, gravity = np.radians(degrees), data["gravity [m/s^2]"]
-    if np.tan(angle) < 3 * friction:
-        return gravity * np.sin(angle) / 1.5
+def acceleration(friction, degrees, gravity, turning=1.5):
+    """Of a rigid body down the plane [m/s^2]; `turning` is 1 plus its moment of inertia over mass and square of the radius, 1.5 for a disk."""
+    angle = np.radians(degrees)
+    if np.tan(angle) < friction * turning / (turning - 1):
+        return gravity * np.sin(angle) / turning
     return gravity * (np.sin(angle) - friction * np.cos(angle))
 
 
-def incline(lab, name, size, place, data):
-    """Starts a run down a plane."""
+def run_down(lab, case, friction_key, name, size, place, data):
+    """Starts a run of the scene of a case down a plane."""
     friction, degrees = INCLINES[name]
     angle, gravity = np.radians(degrees), data["gravity [m/s^2]"]
-    settings = {"contacts[0].friction": friction, "loads[0].acceleration": [float(gravity * np.sin(angle)), float(-gravity * np.cos(angle))],
+    settings = {friction_key: friction, "loads[0].acceleration": [float(gravity * np.sin(angle)), float(-gravity * np.cos(angle))],
                 "mesh.size": size, "mesh.regions[0].shape.low": [place, -0.5]}
-    return lab.run(f"{CASE}/scene.yaml", tools.label(f"{name}_{size}_{-place}"), settings)
+    return lab.run(f"{case}/scene.yaml", tools.label(f"{name}_{size}_{-place}"), settings)
+
+
+def runs_down(lab, case, friction_key, data):
+    """Starts the runs of this level, by incline, size of cells and place of the mesh."""
+    return {(name, size, place): run_down(lab, case, friction_key, name, size, place, data) for name in INCLINES for size in SIZES for place in PLACES
+            if lab.level == "full" or {SIZES[size], PLACES[place]} == {"quick"}}
 
 
 def way(run, data):
@@ -35,7 +41,7 @@ def way(run, data):
 def judge_incline(name, size, place, run, data):
     """The way at the end, relative to that of a rigid disk."""
     time = run.history["time"][-1]
-    exact = acceleration(*INCLINES[name], data) * time**2 / 2
+    exact = acceleration(*INCLINES[name], data["gravity [m/s^2]"]) * time**2 / 2
     where = "" if place == 0 else f", mesh from {place} m"
     return tools.Result(CASE, f"way, {name}, cells of {size} m{where}", "m", float(way(run, data)[-1]), "within", data["slack"][str(size)], float(exact), data["source"], run)
 
@@ -53,15 +59,15 @@ def judge_disks(size, run, data):
                          data["disk source"], run)]
 
 
-def draw(figure, runs, data):
+def draw(figure, runs, way_of, data):
     """Ways over time: closed forms as lines, runs as marks."""
     axis = figure.subplots()
     for colour, name in enumerate(INCLINES):
         time = runs[name, 0.05, 0.0].history["time"]
-        axis.plot(time, acceleration(*INCLINES[name], data) * time**2 / 2, color=f"C{colour}", label=f"closed form, {name}")
+        axis.plot(time, acceleration(*INCLINES[name], data["gravity [m/s^2]"]) * time**2 / 2, color=f"C{colour}", label=f"closed form, {name}")
         for mark, size in zip(("+", "o"), (0.1, 0.05)):
-            history = runs[name, size, 0.0]
-            axis.plot(history.history["time"][::10], way(history, data)[::10], mark, color=f"C{colour}", fillstyle="none",
+            run = runs[name, size, 0.0]
+            axis.plot(run.history["time"][::10], way_of(run, data)[::10], mark, color=f"C{colour}", fillstyle="none",
                       label=f"talus, cells of {size} m" if colour == 0 else None)
     axis.set(xlabel="time [s]", ylabel="way of the middle of the disk [m]")
     axis.legend(fontsize=6)
@@ -70,11 +76,10 @@ def draw(figure, runs, data):
 def evaluate(lab):
     """Results of disks on planes and of colliding disks."""
     data = tools.reference(CASE)
-    runs = {(name, size, place): incline(lab, name, size, place, data) for name in INCLINES for size in SIZES for place in PLACES
-            if lab.level == "full" or {SIZES[size], PLACES[place]} == {"quick"}}
+    runs = runs_down(lab, CASE, "contacts[0].friction", data)
     disks = {size: lab.run(f"{CASE}/scene_disks.yaml", f"disks_{size}", {"mesh.size": size}) for size, level in DISKS.items() if lab.level == "full" or level == "quick"}
     results = [judge_incline(name, size, place, run, data) for (name, size, place), run in runs.items()]
     for size, run in disks.items():
         results += judge_disks(size, run, data)
-    lab.figure(CASE, "verification_contact", lambda figure: draw(figure, runs, data), caption="Way of a disk down an inclined body.")
+    lab.figure(CASE, "verification_contact", lambda figure: draw(figure, runs, way, data), caption="Way of a disk down an inclined body.")
     return results

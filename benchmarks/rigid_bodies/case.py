@@ -4,19 +4,9 @@ import numpy as np
 import lab as tools
 
 CASE = "rigid_bodies"
-INCLINES = {"rolls, friction 0.3, 30 degrees": (0.3, 30), "slides, friction 0.1, 30 degrees": (0.1, 30), "slides, friction 0.3, 60 degrees": (0.3, 60)}
-SIZES = {0.1: "quick", 0.05: "quick", 0.025: "full"}  # 5, 10 and 20 cells over the radius
-PLACES = {0.0: "quick", -0.03: "full", -0.06: "full"}  # m, left end of the room: gmsh then makes other meshes
+CONTACT = tools.module("contact")  # the same inclines
 FOOTINGS = (0.5, 0.25)  # m, sizes of cells, at full level
 WALLS = (0, 0.1, 0.2, 0.28, 0.29, 1)
-
-
-def acceleration(friction, degrees, gravity, turning):
-    """Down a plane [m/s^2]; `turning` is 1 plus the moment of inertia over mass and square of the radius."""
-    angle = np.radians(degrees)
-    if np.tan(angle) < friction * turning / (turning - 1):
-        return gravity * np.sin(angle) / turning
-    return gravity * (np.sin(angle) - friction * np.cos(angle))
 
 
 def on_wall(lab, friction):
@@ -27,27 +17,23 @@ def on_wall(lab, friction):
 def judge_wall(friction, run, data):
     """The way of the sphere at the end."""
     history = run.history
-    exact = acceleration(friction, 45, data["wall gravity [m/s^2]"], 1.4) * history["time"][-1] ** 2 / 2
+    exact = CONTACT.acceleration(friction, 45, data["wall gravity [m/s^2]"], 1.4) * history["time"][-1] ** 2 / 2
     return tools.Result(CASE, f"way of a sphere on a wall, friction {friction}", "m", float(history["rigid_ball_x"][-1] - data["wall start [m]"]), "within",
                         data["wall slack"], float(exact), data["wall source"], run)
 
 
-def on_body(lab, name, size, place, data):
-    """Starts a run on a body of particles."""
-    friction, degrees = INCLINES[name]
-    angle, gravity = np.radians(degrees), data["gravity [m/s^2]"]
-    settings = {"rigid[0].friction": friction, "loads[0].acceleration": [float(gravity * np.sin(angle)), float(-gravity * np.cos(angle))],
-                "mesh.size": size, "mesh.regions[0].shape.low": [place, -0.5]}
-    return lab.run(f"{CASE}/scene.yaml", tools.label(f"{name}_{size}_{-place}"), settings)
+def way(run, data):
+    """How far the middle of the disk has come [m]."""
+    return run.history["rigid_disk_x"] - data["start [m]"]
 
 
 def judge_body(name, size, place, run, data):
     """The way of the disk at the end, and how much it turns for its way."""
     history = run.history
-    friction, degrees = INCLINES[name]
-    exact = acceleration(friction, degrees, data["gravity [m/s^2]"], 1.5) * history["time"][-1] ** 2 / 2
+    friction, degrees = CONTACT.INCLINES[name]
+    exact = CONTACT.acceleration(friction, degrees, data["gravity [m/s^2]"]) * history["time"][-1] ** 2 / 2
     where = "" if place == 0 else f", mesh from {place} m"
-    results = [tools.Result(CASE, f"way of a disk on a body, {name}, cells of {size} m{where}", "m", float(history["rigid_disk_x"][-1] - data["start [m]"]),
+    results = [tools.Result(CASE, f"way of a disk on a body, {name}, cells of {size} m{where}", "m", float(way(run, data)[-1]),
                             "within", data["slack"][str(size)], float(exact), data["source"], run)]
     if name.startswith("rolls"):
         turned = -history["rigid_disk_wz"][-1] * data["radius [m]"] / history["rigid_disk_vx"][-1]
@@ -67,31 +53,16 @@ def judge_footing(size, run, data):
                          data["footing source"], run)]
 
 
-def draw(figure, runs, data):
-    """Ways over time: closed forms as lines, runs as marks."""
-    axis = figure.subplots()
-    for colour, (name, (friction, degrees)) in enumerate(INCLINES.items()):
-        time = runs[name, 0.05, 0.0].history["time"]
-        axis.plot(time, acceleration(friction, degrees, data["gravity [m/s^2]"], 1.5) * time**2 / 2, color=f"C{colour}", label=f"closed form, {name}")
-        for mark, size in zip(("+", "o"), (0.1, 0.05)):
-            history = runs[name, size, 0.0].history
-            axis.plot(history["time"][::10], history["rigid_disk_x"][::10] - data["start [m]"], mark, color=f"C{colour}", fillstyle="none",
-                      label=f"talus, cells of {size} m" if colour == 0 else None)
-    axis.set(xlabel="time [s]", ylabel="way of the middle of the disk [m]")
-    axis.legend(fontsize=6)
-
-
 def evaluate(lab):
     """Results of spheres on a wall and of disks on a body."""
     data = tools.reference(CASE)
     walls = {friction: on_wall(lab, friction) for friction in WALLS}
-    runs = {(name, size, place): on_body(lab, name, size, place, data) for name in INCLINES for size in SIZES for place in PLACES
-            if lab.level == "full" or {SIZES[size], PLACES[place]} == {"quick"}}
+    runs = CONTACT.runs_down(lab, CASE, "rigid[0].friction", data)
     footings = {size: lab.run(f"{CASE}/scene_footing.yaml", f"footing_{size}", {"mesh.size": size}) for size in FOOTINGS if lab.level == "full"}
     results = [judge_wall(friction, run, data) for friction, run in walls.items()]
     for size, run in footings.items():
         results += judge_footing(size, run, data)
     for (name, size, place), run in runs.items():
         results += judge_body(name, size, place, run, data)
-    lab.figure(CASE, "verification_rigid_bodies", lambda figure: draw(figure, runs, data), caption="Way of a rigid disk down an inclined body.")
+    lab.figure(CASE, "verification_rigid_bodies", lambda figure: CONTACT.draw(figure, runs, way, data), caption="Way of a rigid disk down an inclined body.")
     return results

@@ -81,17 +81,7 @@ void ContactNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Com
     return;
   copies_ = copies_of_nodes(ranks, subdomain, MessageTag::contact_nodes, std::vector<std::uint8_t>(n_nodes, 1));
   cells_ = copies_of_cells(ranks, subdomain, MessageTag::contact_cells, mesh.n_cells());
-  std::vector<NeighbourRank> borders;
-  staged_.clear();
-  for (const NeighbourRank& border : copies_.borders()) {
-    NeighbourRank& back = borders.emplace_back(NeighbourRank{border.rank, border.in, {}});
-    for (const Index n : border.out) {
-      back.in.push_back(static_cast<Index>(staged_.size()));
-      staged_.push_back(n);
-    }
-  }
-  back_ = HaloExchange(ranks, MessageTag::contact_reach, std::move(borders));
-  reach_of_others_.assign(staged_.size(), Reach{-beyond, beyond});
+  back_ = ReturnToOwners<Reach>(ranks, MessageTag::contact_reach, copies_, {-beyond, beyond});
 }
 
 template <int D>
@@ -269,13 +259,10 @@ void ContactNodes<D>::find_reach(const Mesh<D>& mesh, const ParticleStrips<D>& s
       for_each_beside(law.first, [&](Real along, Real half) { reach.first = std::max(reach.first, along + half); });
       for_each_beside(law.second, [&](Real along, Real half) { reach.second = std::min(reach.second, along - half); });
     });
-    back_.send(reach_[l], Reached{});
-    back_.take(reach_of_others_, Reached{});
-    for (std::size_t k = 0; k < staged_.size(); ++k) {
-      Reach& reach = reach_[l][static_cast<std::size_t>(staged_[k])];
-      reach.first = std::max(reach.first, reach_of_others_[k].first);
-      reach.second = std::min(reach.second, reach_of_others_[k].second);
-    }
+    back_(reach_[l], Reached{}, [](Reach& reach, const Reach& other) {
+      reach.first = std::max(reach.first, other.first);
+      reach.second = std::min(reach.second, other.second);
+    });
   }
   for (ContactNode<D>& at : nodes_) {
     const Reach& reach = reach_[static_cast<std::size_t>(at.law)][static_cast<std::size_t>(at.node)];

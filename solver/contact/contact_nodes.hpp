@@ -90,12 +90,11 @@ class ContactNodes {
 
   Contacts contacts_;
   std::vector<ContactNode<D>> nodes_;  ///< own ones, by law and node
-  HaloExchange copies_, cells_, back_;
-  std::vector<Index> staged_;                         ///< own nodes whose reach other ranks send, one after the other
+  HaloExchange copies_, cells_;
+  ReturnToOwners<Reach> back_;
   std::vector<std::vector<std::uint8_t>> candidate_;  ///< by law and node
   std::vector<std::vector<Vec<D>>> normal_;           ///< by law and node
   std::vector<std::vector<Reach>> reach_;             ///< by law and node
-  std::vector<Reach> reach_of_others_;                ///< by place in `staged_`
   std::vector<Real> hats_;                            ///< volume of the linear shape functions [m^D]
   std::vector<std::vector<CellVolumes>> volumes_;     ///< by field and cell
   std::vector<NodeGradients> gradients_;              ///< by node, of one law at a time

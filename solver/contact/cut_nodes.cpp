@@ -55,17 +55,7 @@ void CutNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communi
   if (subdomain.alone())
     return;
   copies_ = copies_of_nodes(ranks, subdomain, MessageTag::cut_nodes, in_pair);
-  std::vector<NeighbourRank> borders;
-  staged_.clear();
-  for (const NeighbourRank& border : copies_.borders()) {
-    NeighbourRank& back = borders.emplace_back(NeighbourRank{border.rank, border.in, {}});
-    for (const Index n : border.out) {
-      back.in.push_back(static_cast<Index>(staged_.size()));
-      staged_.push_back(n);
-    }
-  }
-  back_ = HaloExchange(ranks, MessageTag::cut_reach, std::move(borders));
-  reach_of_others_.assign(staged_.size(), nowhere);
+  back_ = ReturnToOwners<Real>(ranks, MessageTag::cut_reach, copies_, nowhere);
 }
 
 template <int D>
@@ -138,12 +128,7 @@ void CutNodes<D>::find_reach(const Mesh<D>& mesh, const OwnNodes& own, const Par
         });
     reach_[static_cast<std::size_t>(n)] = reach;
   });
-  back_.send(reach_, Numbers{});
-  back_.take(reach_of_others_, Numbers{});
-  for (std::size_t k = 0; k < staged_.size(); ++k) {
-    Real& reach = reach_[static_cast<std::size_t>(staged_[k])];
-    reach = std::max(reach, reach_of_others_[k]);
-  }
+  back_(reach_, Numbers{}, [](Real& reach, Real other) { reach = std::max(reach, other); });
   for_each_own(own, [&](Index n) { half(n).reach = reach_[static_cast<std::size_t>(n)]; });
 }
 

@@ -80,9 +80,8 @@ class CutNodes {
   std::vector<Half> halves_;       ///< by node
   std::vector<Real> reach_;        ///< by node: how far particles of its side reach along the normal out of that side [m]
   Csr cells_of_side_;              ///< by pair and side: cells within two rings
-  HaloExchange copies_, back_;
-  std::vector<Index> staged_;          ///< own nodes whose reach other ranks send, one after the other
-  std::vector<Real> reach_of_others_;  ///< by place in `staged_`
+  HaloExchange copies_;
+  ReturnToOwners<Real> back_;
 };
 
 }  // namespace talus

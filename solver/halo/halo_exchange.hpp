@@ -305,4 +305,39 @@ inline HaloExchange copies_of_cells(Communicator& ranks, const Subdomain& subdom
   return copies_from_owners(ranks, topic, std::move(all), std::move(asked), [&](Index whole) { return subdomain.local_cell(whole); });
 }
 
+/// The way back of an exchange from owners to copies: what ranks have found for copies of nodes goes to the owners.
+template <class Row>
+class ReturnToOwners {
+ public:
+  ReturnToOwners() = default;
+  /// A row of which nothing is sent is `nothing`.
+  ReturnToOwners(Communicator& ranks, MessageTag topic, const HaloExchange& copies, const Row& nothing)
+  {
+    std::vector<NeighbourRank> borders;
+    for (const NeighbourRank& border : copies.borders()) {
+      NeighbourRank& back = borders.emplace_back(NeighbourRank{border.rank, border.in, {}});
+      for (const Index n : border.out) {
+        back.in.push_back(static_cast<Index>(owned_.size()));
+        owned_.push_back(n);
+      }
+    }
+    exchange_ = HaloExchange(ranks, topic, std::move(borders));
+    of_others_.assign(owned_.size(), nothing);
+  }
+  /// Calls add(own row, that of another rank) for the rows of own nodes that others hold copies of.
+  template <class What, class Add>
+  void operator()(std::vector<Row>& rows, const What& what, Add&& add)
+  {
+    exchange_.send(rows, what);
+    exchange_.take(of_others_, what);
+    for (std::size_t k = 0; k < owned_.size(); ++k)
+      add(rows[static_cast<std::size_t>(owned_[k])], of_others_[k]);
+  }
+
+ private:
+  HaloExchange exchange_;
+  std::vector<Index> owned_;  // nodes of other ranks' copies, one after the other
+  std::vector<Row> of_others_;
+};
+
 }  // namespace talus

@@ -119,19 +119,6 @@ struct RigidScene {
   std::vector<RigidWall<D>> walls;
 };
 
-/// Changes of velocity by an impulse [N s] at an arm [m] from the centre.
-template <int D>
-void push(const RigidBody<D>& body, RigidState<D>& state, const Vec<D>& impulse, const Vec3& moment_about_centre)
-{
-  if (!body.is_free())
-    return;
-  state.v += impulse / body.mass;
-  if constexpr (D == 2)
-    state.spin[2] += moment_about_centre[2] / body.inertia(2, 2);
-  else
-    state.spin += state.inertia(body).inverse() * moment_about_centre;
-}
-
 /// Begins a step: gravity [m/s^2] acts on free bodies over `kick` [s], others get their velocity of the time `mid` [s].
 template <int D>
 void begin_step(const RigidScene<D>& scene, const Vec<D>& gravity, Real kick, Real mid, std::vector<RigidState<D>>& states);

@@ -1,6 +1,5 @@
 // Impulses between material and rigid bodies, and the motion of bodies that follows from them.
 #include <Eigen/LU>
-#include <limits>
 
 #include "solver/rigid/rigid_nodes.hpp"
 
@@ -63,7 +62,7 @@ TwistSlope<D> inertia_of(const RigidBody<D>& body, const RigidState<D>& state)
 template <int D>
 struct Mass {
   Vec<D> v;                          ///< [m/s]
-  Real along_normal, along_tangent;  ///< what resists an impulse [kg]; infinite where a boundary condition holds it
+  Real along_normal, along_tangent;  ///< what resists an impulse [kg]; zero where a boundary condition holds it: nothing is exchanged there
 };
 
 /// The impulse on the material [N s] if the rigid body has velocity u at the node, and its derivative by u.
@@ -111,7 +110,7 @@ Real resistance(const BoundaryConditions<D>& conditions, Index node, Real time, 
   return admitted > least ? mass / admitted : 0;
 }
 
-/// Sums over the nodes that touch a body: the impulse on it, negative, and its derivative by the motion of the body.
+/// Sums over the nodes that touch a body: impulse and moment on the material, and their derivative by the motion of the body.
 template <int D>
 struct Response {
   std::array<Real, motions<D>> impulse{};
@@ -155,7 +154,7 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
     const Twist<D> before = twist<D>(state.v, state.spin);
     Twist<D> q = before;
     if (body.is_free()) {
-      const TwistSlope<D> inertia = inertia_of(body, state);
+      const TwistSlope<D> inertia = inertia_of(body, state), per_inertia = inertia.inverse();
       Twist<D> reaction = Twist<D>::Zero();
       TwistSlope<D> slope;
       const auto respond = [&](const Twist<D>& to) {
@@ -177,7 +176,7 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
         return Twist<D>(inertia * (to - before) + reaction);
       };
       // In the norm of kinetic energy, in which motion and rotation can be compared.
-      const auto size = [&](const Twist<D>& momentum) { return std::sqrt(std::abs(momentum.dot(inertia.inverse() * momentum))); };
+      const auto size = [&](const Twist<D>& momentum) { return std::sqrt(std::abs(momentum.dot(per_inertia * momentum))); };
       Twist<D> left = respond(q);
       for (int step = 0; step < most_steps && size(left) > tolerance * size(reaction); ++step) {
         const Twist<D> change = -slope.partialPivLu().solve(left), from = q;
@@ -190,7 +189,7 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
             break;
         }
       }
-      const Twist<D> after = before - inertia.inverse() * reaction;  // momentum is exact wherever the method has ended
+      const Twist<D> after = before - per_inertia * reaction;  // momentum is exact wherever the method has ended
       state.v = after.template head<D>(), state.spin = angular_part<D>(after);
     }
     for (std::size_t k = 0; k < touching.size(); ++k) {

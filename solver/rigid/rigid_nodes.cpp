@@ -26,17 +26,7 @@ void RigidNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Commu
   if (subdomain.alone())
     return;
   copies_ = copies_of_nodes(ranks, subdomain, MessageTag::rigid_nodes, std::vector<std::uint8_t>(n_nodes, 1));
-  std::vector<NeighbourRank> borders;
-  staged_.clear();
-  for (const NeighbourRank& border : copies_.borders()) {
-    NeighbourRank& back = borders.emplace_back(NeighbourRank{border.rank, border.in, {}});
-    for (const Index n : border.out) {
-      back.in.push_back(static_cast<Index>(staged_.size()));
-      staged_.push_back(n);
-    }
-  }
-  back_ = HaloExchange(ranks, MessageTag::rigid_touches, std::move(borders));
-  touch_of_others_.assign(staged_.size(), {});
+  back_ = ReturnToOwners<Touch<D>>(ranks, MessageTag::rigid_touches, copies_, {});
 }
 
 template <int D>
@@ -53,13 +43,15 @@ void RigidNodes<D>::find_candidates(const Place& at, Index field, const Nodes<D>
     if ((at.mesh.node(n) - at.state.x).squaredNorm() > reach * reach || at.state.distance(at.shape, at.mesh.node(n)).distance > near)
       return;
     candidate_[i] = 1;
+    candidates_.push_back(n);
     nodes_.push_back({.rigid = at.rigid, .field = field, .node = n, .touch = {}});
   });
   copies_.send(candidate_, OfMarked{itself, candidate_});
   copies_.take(candidate_, OfMarked{itself, candidate_});
-  for (std::size_t n = 0; n < candidate_.size(); ++n)
-    if (candidate_[n] != 0)
-      candidates_.push_back(static_cast<Index>(n));
+  for (const NeighbourRank& border : copies_.borders())
+    for (const Index n : border.in)
+      if (candidate_[static_cast<std::size_t>(n)] != 0)
+        candidates_.push_back(n);
 }
 
 template <int D>
@@ -107,12 +99,7 @@ void RigidNodes<D>::find_deepest(const Place& at, std::span<RigidNode<D>> found)
             deepest = std::min(deepest, touch);
         }
   });
-  back_.send(touch_, Whole{});
-  back_.take(touch_of_others_, Whole{});
-  for (std::size_t k = 0; k < staged_.size(); ++k) {
-    Touch<D>& deepest = touch_[static_cast<std::size_t>(staged_[k])];
-    deepest = std::min(deepest, touch_of_others_[k]);
-  }
+  back_(touch_, Whole{}, [](Touch<D>& deepest, const Touch<D>& other) { deepest = std::min(deepest, other); });
   for (RigidNode<D>& one : found)
     one.touch = touch_[static_cast<std::size_t>(one.node)];
   for (const Index n : candidates_)

@@ -89,12 +89,11 @@ class RigidNodes {
   std::size_t n_bodies_ = 0;
   std::vector<std::vector<Index>> bodies_of_field_;
   std::vector<RigidNode<D>> nodes_;  ///< own ones, by rigid body, field and node
-  HaloExchange copies_, back_;
-  std::vector<Index> staged_;              ///< own nodes whose touches other ranks send, one after the other
-  std::vector<Touch<D>> touch_of_others_;  ///< by place in `staged_`
+  HaloExchange copies_;
+  ReturnToOwners<Touch<D>> back_;
   // Of one rigid body and field at a time:
   std::vector<std::uint8_t> candidate_;  ///< by node
-  std::vector<Index> candidates_;        ///< held here, ascending
+  std::vector<Index> candidates_;        ///< held here
   std::vector<Touch<D>> touch_;          ///< by node
   std::vector<Index> marked_;            ///< cells within two rings of candidates
   std::vector<Index> place_of_cell_;     ///< in `marked_`, or none

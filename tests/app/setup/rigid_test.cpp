@@ -87,6 +87,19 @@ TEST_F(RigidOfScene, AFileThatIsOpenOrInsideOutIsRefused)
   EXPECT_THAT(read("err.txt"), HasSubstr("none.stl"));
 }
 
+TEST_F(RigidOfScene, AFreeBodyThatLeavesTheMeshStopsTheRunUnlessItMayGo)
+{
+  const std::string scene =
+      block_and("  - {name: ball, shape: {type: sphere, centre: [1.9, 1.6], radius: 0.3}, mass: 1, velocity: [20, 0]}\n");
+  write("scene.yaml", scene);
+  const Outcome outcome = talus("run scene.yaml --quiet --out out");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("the rigid body \"ball\" has left the mesh at (2.0"));
+  EXPECT_THAT(outcome.err, HasSubstr("last good output"));
+  write("scene.yaml", "on_exit: delete\n" + scene);
+  EXPECT_EQ(talus("run scene.yaml --quiet --out gone").code, 0) << read("err.txt");
+}
+
 TEST_F(RigidOfScene, ARunWritesItsPlaceItsForcesAndItsSurface)
 {
   write("scene.yaml",

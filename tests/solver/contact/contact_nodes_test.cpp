@@ -1,20 +1,14 @@
 // Two blocks with velocity fields of their own: where they touch, what they exchange, and what they do not.
 #include <gtest/gtest.h>
 
-#include "tests/solver/blocks_of_particles.hpp"
+#include "tests/solver/contact_kinds.hpp"
 
 namespace talus::testing::contact_nodes_test {
 namespace {
 
-template <int N, template <int> class K>
-struct Kind {
-  static constexpr int D = N;
-  using Kernel = K<N>;
-};
 template <class S>
 class ContactIn : public ::testing::Test {};
-using Kinds = ::testing::Types<Kind<2, Projected>, Kind<2, Umls>, Kind<2, Linear>, Kind<3, Projected>, Kind<3, Linear>>;
-TYPED_TEST_SUITE(ContactIn, Kinds);
+TYPED_TEST_SUITE(ContactIn, ContactKinds);
 
 /// Two blocks, one above the other with so many empty layers of cells between them; each moves with a velocity of its own.
 template <class S>
@@ -43,12 +37,6 @@ ContactLaw rubbing(Real friction, Real cohesion = 0)
   ContactLaw law;
   law.friction = friction, law.cohesion = cohesion;
   return law;
-}
-
-template <int D>
-Vec<D> along(int axis, Real size)
-{
-  return size * Vec<D>::Unit(axis);
 }
 
 TYPED_TEST(ContactIn, BlocksThatMeetExchangeOppositeImpulses)

@@ -4,20 +4,14 @@
 #include <limits>
 
 #include "tests/mesh/cut_box.hpp"
-#include "tests/solver/blocks_of_particles.hpp"
+#include "tests/solver/contact_kinds.hpp"
 
 namespace talus::testing::cut_nodes_test {
 namespace {
 
-template <int N, template <int> class K>
-struct Kind {
-  static constexpr int D = N;
-  using Kernel = K<N>;
-};
 template <class S>
 class CutIn : public ::testing::Test {};
-using Kinds = ::testing::Types<Kind<2, Projected>, Kind<2, Umls>, Kind<2, Linear>, Kind<3, Projected>, Kind<3, Linear>>;
-TYPED_TEST_SUITE(CutIn, Kinds);
+TYPED_TEST_SUITE(CutIn, ContactKinds);
 template <class S>
 class TiedIn : public ::testing::Test {};
 using OfLinear = ::testing::Types<Kind<2, Linear>, Kind<3, Linear>>;
@@ -49,12 +43,6 @@ bool both_move(const Model<D>& m, const CutNode<D>& at)
 {
   const auto& active = m.work.fields.front().nodes.active;
   return active[static_cast<std::size_t>(at.first)] != 0 && active[static_cast<std::size_t>(at.second)] != 0;
-}
-
-template <int D>
-Vec<D> along(int axis, Real size)
-{
-  return size * Vec<D>::Unit(axis);
 }
 
 TYPED_TEST(TiedIn, ATiedCutIsNone)

@@ -1,26 +1,14 @@
 // A block of particles and a rigid body above it: where they touch, what they exchange, and what they do not.
 #include <gtest/gtest.h>
 
-#include "tests/solver/blocks_of_particles.hpp"
+#include "tests/solver/contact_kinds.hpp"
 
 namespace talus::testing::rigid_nodes_test {
 namespace {
 
-template <int N, template <int> class K>
-struct Kind {
-  static constexpr int D = N;
-  using Kernel = K<N>;
-};
 template <class S>
 class RigidIn : public ::testing::Test {};
-using Kinds = ::testing::Types<Kind<2, Projected>, Kind<2, Umls>, Kind<2, Linear>, Kind<3, Projected>, Kind<3, Linear>>;
-TYPED_TEST_SUITE(RigidIn, Kinds);
-
-template <int D>
-Vec<D> along(int axis, Real size)
-{
-  return size * Vec<D>::Unit(axis);
-}
+TYPED_TEST_SUITE(RigidIn, ContactKinds);
 
 /// A block that ends half way up, and a ball of this mass whose lowest point is `gap` above it.
 template <class S>
