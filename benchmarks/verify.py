@@ -36,6 +36,7 @@ CASES = [
     "rigid_bodies",
     "rigid_motion",
     "sliding_block",
+    "wall_gap",
     "colliding_disks",
     "contact",
     "contact_bodies",

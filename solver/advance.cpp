@@ -57,10 +57,11 @@ void integrate_momentum(Model<D>& m, Real dt)
     integrate(m.problem.loads.gravity(clock.time, m.state.stage.ramp(clock.time)), clock.lag + dt / 2, field.nodes);
 }
 
-/// Applies dashpots, then prescribed velocities, planes and friction.
+/// Applies dashpots, then prescribed velocities, planes and friction; walls with gaps where material touches them.
 template <int D>
 void apply_boundary_conditions(Model<D>& m, const Kick& kick, Real dt)
 {
+  m.work.walls.find(m.problem.mesh, *m.work.strips, m.work.fields);
   for (VelocityField<D>& field : m.work.fields) {
     m.state.boundary.apply_dashpots(kick.to, dt, *m.problem.ranks, field.nodes);
     m.state.boundary.apply(kick, field.nodes, m.work.sums.at_nodes);
@@ -114,7 +115,7 @@ template <int D>
 void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 {
   for (VelocityField<D>& field : m.work.fields)
-    field.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, field.nodes.motion, m.work.sums.beyond_nodes);
+    field.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, field.nodes, m.work.sums.beyond_nodes);
   m.transfer->send_motion(m);
 }
 

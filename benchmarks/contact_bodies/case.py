@@ -25,9 +25,10 @@ def block(lab, slope, size, data):
 
 
 def way(slope, time, data, friction):
-    """How far a rigid block slides [m]."""
-    angle = np.arctan(slope)
-    return data["gravity [m/s^2]"] * max(0.0, np.sin(angle) - friction * np.cos(angle)) * time**2 / 2
+    """How far a rigid block slides [m] under a gravity that grows linearly at first."""
+    angle, ramp = np.arctan(slope), data["ramp [s]"]
+    falls = (time - ramp)**2 / 2 + (time - ramp) * ramp / 2 + ramp**2 / 6
+    return data["gravity [m/s^2]"] * max(0.0, np.sin(angle) - friction * np.cos(angle)) * falls
 
 
 def judge_block(name, size, run, data):

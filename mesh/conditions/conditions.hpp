@@ -44,6 +44,7 @@ concept HoldsNodes = requires(const C condition, const DynamicPhase& phase)
 ///   static constexpr bool two_sided                            whether the normal velocity vanishes in both directions, or only outwards
 ///   void act(Node&, const Vec<D>& normal) const                changes the velocity; the unit normal points out of the mesh
 ///   static void constrain(Vec<D>& v, const Vec<D>& normal)     the kinematic part only
+///   bool gap                                                   of one-sided ones, if there: it acts only where material touches the plane
 /// Two-sided planes of all conditions at a node get orthonormal normals.
 template <class C>
 concept ActsOnPlanes = requires

@@ -10,12 +10,17 @@ namespace talus {
 struct FrictionOptions : BoundaryCommon {
   static constexpr std::string_view name = "friction";
   Real coefficient{};
+  bool gap = false;
   static constexpr auto fields()
   {
-    return std::tuple{on_key("facet group that acts as a wall: no penetration, free separation"),
-                      required("coefficient", &FrictionOptions::coefficient, non_negative, "-",
-                               "Coulomb friction coefficient, tangent of the wall friction angle"),
-                      during_key()};
+    return std::tuple{
+        on_key("facet group that acts as a wall: no penetration, free separation"),
+        required("coefficient", &FrictionOptions::coefficient, non_negative, "-",
+                 "Coulomb friction coefficient, tangent of the wall friction angle"),
+        optional("gap", &FrictionOptions::gap, any, "-",
+                 "the wall acts where the surface of material touches it; without, at all its nodes that have mass, and so up to "
+                 "a cell early"),
+        during_key()};
   }
 };
 
@@ -24,7 +29,8 @@ struct Friction {
   using Options = FrictionOptions;
   static constexpr bool two_sided = false;
   Real coefficient{};  ///< coefficient of friction [-]
-  static Friction make(const Options& options, const ConditionSetup<D>&) { return {options.coefficient}; }
+  bool gap = false;    ///< whether it acts only where material touches it
+  static Friction make(const Options& options, const ConditionSetup<D>&) { return {options.coefficient, options.gap}; }
 
   /// Applies the wall to a node; the normal points out of the mesh.  A normal velocity into the wall is removed, and the tangential
   /// velocity is reduced by at most the coefficient times the removed velocity.  The work of the tangential impulse is heat.

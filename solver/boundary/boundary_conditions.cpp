@@ -177,8 +177,8 @@ void BoundaryConditions<D>::apply_dashpots(Real mid, Real dt, Communicator& rank
 }
 
 template <int D>
-void BoundaryConditions<D>::push(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& sliding,
-                                 ExactSums<BoundaryWork>& work)
+void BoundaryConditions<D>::push(const NodeRule& rule, std::uint8_t open, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change,
+                                 bool& sliding, ExactSums<BoundaryWork>& work)
 {
   const Vec<D> v_old = v - change;
   PushedNode node(rule, kick, mass, v, pushed_);
@@ -205,8 +205,7 @@ void BoundaryConditions<D>::push(const NodeRule& rule, const Kick& kick, Real ma
         if (!released(plane.condition))
           act(plane);
       node.pushed = false;
-      for (const Plane& plane : rule.one_sided)
-        act(plane);
+      for_each_touched(rule, open, act);
       if (!node.pushed || rule.two_sided.size() + rule.one_sided.size() == 1)
         break;
     }
@@ -227,7 +226,7 @@ void BoundaryConditions<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<B
     const auto n = static_cast<std::size_t>(rule.node);
     bool slides = false;
     if (nodes.active[n])
-      push(rule, kick, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, slides, work);
+      push(rule, nodes.of_field(rule.node).open, kick, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, slides, work);
     nodes.slides[n] = slides ? 1 : 0;
   }
   if (phase_.begun)
@@ -240,23 +239,23 @@ void BoundaryConditions<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<B
 }
 
 template <int D>
-void BoundaryConditions<D>::apply(const Kick& kick, std::span<const ProjectedNodeSum<D>> sums, std::span<ProjectedNodeMotion<D>> projected,
-                                  ExactSums<BoundaryWork>& work)
+void BoundaryConditions<D>::apply(const Kick& kick, const Nodes<D>& nodes, std::span<const ProjectedNodeSum<D>> sums,
+                                  std::span<ProjectedNodeMotion<D>> projected, ExactSums<BoundaryWork>& work)
 {
   for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     bool sliding{};
     if (sums[n].is_seen())
-      push(rule, kick, sums[n].mass, projected[n].v, projected[n].change, sliding, work);
+      push(rule, nodes.of_field(rule.node).open, kick, sums[n].mass, projected[n].v, projected[n].change, sliding, work);
   }
 }
 
 template <int D>
-void BoundaryConditions<D>::apply(Index node, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<BoundaryWork>& work)
+void BoundaryConditions<D>::apply(NodeOfField at, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<BoundaryWork>& work)
 {
   bool sliding{};
-  if (binds(node))
-    push(rule_of(node), kick, mass, motion.v, motion.change, sliding, work);
+  if (binds(at.node))
+    push(rule_of(at.node), at.open, kick, mass, motion.v, motion.change, sliding, work);
 }
 
 template <int D>
@@ -270,7 +269,7 @@ void BoundaryConditions<D>::keep_impulses()
 }
 
 template <int D>
-Vec<D> BoundaryConditions<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) const
+Vec<D> BoundaryConditions<D>::constrained(const NodeRule& rule, std::uint8_t open, Real time, const Vec<D>& v) const
 {
   Vec<D> held = v;
   const auto constrain = [&](const Plane& plane) {
@@ -290,8 +289,7 @@ Vec<D> BoundaryConditions<D>::constrained(const NodeRule& rule, Real time, const
         kind(rule.holder));
     return held;
   }
-  for (const Plane& plane : rule.one_sided)
-    constrain(plane);
+  for_each_touched(rule, open, constrain);
   for (const Plane& plane : rule.two_sided)
     if (!released(plane.condition))
       constrain(plane);
@@ -299,19 +297,40 @@ Vec<D> BoundaryConditions<D>::constrained(const NodeRule& rule, Real time, const
 }
 
 template <int D>
-void BoundaryConditions<D>::hold(Real time, std::span<const std::uint8_t> slides, std::span<NodeMotion<D>> remapped) const
+void BoundaryConditions<D>::hold(Real time, Nodes<D>& nodes) const
 {
   for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
-    NodeMotion<D>& row = remapped[n];
-    row.v = slides[n] != 0 ? row.change : constrained(rule, time, row.v);
+    NodeMotion<D>& row = nodes.remapped[n];
+    row.v = nodes.slides[n] != 0 ? row.change : constrained(rule, nodes.of_field(rule.node).open, time, row.v);
   }
 }
 
 template <int D>
-Vec<D> BoundaryConditions<D>::held(Index node, Real time, const Vec<D>& v) const
+Vec<D> BoundaryConditions<D>::held(NodeOfField at, Real time, const Vec<D>& v) const
 {
-  return binds(node) ? constrained(rule_of(node), time, v) : v;
+  return binds(at.node) ? constrained(rule_of(at.node), at.open, time, v) : v;
+}
+
+template <int D>
+auto BoundaryConditions<D>::gap_planes() const -> std::vector<GapPlane>
+{
+  const auto has_gap = [&](const Plane& plane) {
+    return std::visit(
+        []<class C>(const C& kind) {
+          if constexpr (requires { kind.gap; })
+            return kind.gap;
+          else
+            return false;
+        },
+        kind(plane.condition));
+  };
+  std::vector<GapPlane> planes;
+  for (const NodeRule& rule : rules_)
+    for (std::size_t k = 0; k < std::min(rule.one_sided.size(), std::size_t{8}); ++k)
+      if (has_gap(rule.one_sided[k]))
+        planes.push_back({rule.node, static_cast<int>(k), rule.one_sided[k].normal});
+  return planes;
 }
 
 template <int D>

@@ -47,18 +47,27 @@ class BoundaryConditions {
   void apply(const Kick& kick, Nodes<D>& nodes, ExactSums<BoundaryWork>& work);
   /// Applies the conditions to projected nodes, whose values combine those of several nodes; `sums` has their mass and tells which ones
   /// particles use.
-  void apply(const Kick& kick, std::span<const ProjectedNodeSum<D>> sums, std::span<ProjectedNodeMotion<D>> projected,
-             ExactSums<BoundaryWork>& work);
-  /// Applies the conditions to a node of small mass [kg].
-  void apply(Index node, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<BoundaryWork>& work);
+  void apply(const Kick& kick, const Nodes<D>& nodes, std::span<const ProjectedNodeSum<D>> sums,
+             std::span<ProjectedNodeMotion<D>> projected, ExactSums<BoundaryWork>& work);
+  /// Applies the conditions to a node of this mass [kg].
+  void apply(NodeOfField at, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<BoundaryWork>& work);
   /// The impulses of the present step by condition, to be summed over the ranks; then the conditions store them.
   std::span<ExactSums<Impulse>> pushed() noexcept { return pushed_; }
   void keep_impulses();
-  /// Applies the kinematic part only, to remapped velocities (rows: remapped velocity in `v`, velocity of the step in `change`).  A node
+  /// Applies the kinematic part only, to remapped velocities of nodes (remapped velocity in `v`, velocity of the step in `change`).  A node
   /// that `slides` keeps the velocity of the step: friction acted on it, and a strain from any other velocity would create energy.
-  void hold(Real time, std::span<const std::uint8_t> slides, std::span<NodeMotion<D>> remapped) const;
+  void hold(Real time, Nodes<D>& nodes) const;
   /// The kinematic part for one node.
-  Vec<D> held(Index node, Real time, const Vec<D>& v) const;
+  Vec<D> held(NodeOfField at, Real time, const Vec<D>& v) const;
+
+  /// A plane of a wall with gaps.
+  struct GapPlane {
+    Index node;
+    int number;     ///< among the one-sided planes of the node
+    Vec<D> normal;  ///< out of the mesh, unit length
+  };
+  /// Of nodes with more than eight planes the first eight.
+  std::vector<GapPlane> gap_planes() const;
 
   std::span<const BoundaryCondition<D>> conditions() const noexcept { return conditions_; }
   /// Copies the data that a restart needs from the conditions of another stage.
@@ -93,6 +102,14 @@ class BoundaryConditions {
     bool counted = true;  ///< false on ranks with a copy of the node
   };
   class PushedNode;
+  /// Calls f(plane) for the one-sided planes that are not open.
+  template <class F>
+  static void for_each_touched(const NodeRule& rule, std::uint8_t open, F&& f)
+  {
+    for (std::size_t k = 0; k < rule.one_sided.size(); ++k)
+      if (k >= 8 || (open >> k & 1) == 0)
+        f(rule.one_sided[k]);
+  }
   NodeRule& rule(const Mesh<D>& mesh, Index node);
   void hold_by(Index condition, const Mesh<D>& mesh, Index node);
   void add_planes(Index condition, bool two_sided, const Mesh<D>& mesh, std::span<const Facet> facets);
@@ -108,9 +125,10 @@ class BoundaryConditions {
   {
     return rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])];
   }
-  /// Applies the conditions of `rule` to a mass [kg] at a node with velocity v, whose change in this step is `change`.
-  void push(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& sliding, ExactSums<BoundaryWork>& work);
-  Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
+  /// Applies the conditions of `rule` to a mass [kg] at a node with velocity v, whose change in this step is `change`.  `open`: see Nodes.
+  void push(const NodeRule& rule, std::uint8_t open, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& sliding,
+            ExactSums<BoundaryWork>& work);
+  Vec<D> constrained(const NodeRule& rule, std::uint8_t open, Real time, const Vec<D>& v) const;
 
   std::vector<BoundaryCondition<D>> conditions_;
   std::vector<ExactSums<Impulse>> pushed_;  ///< impulse of each condition in this step

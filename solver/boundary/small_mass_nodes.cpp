@@ -175,8 +175,9 @@ void SmallMassNodes<D>::give_to_hosts(const Mesh<D>& mesh, const OwnNodes& own, 
 
 template <int D>
 void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions,
-                                    SparseRows<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work)
+                                    Nodes<D>& nodes, ExactSums<BoundaryWork>& work)
 {
+  SparseRows<NodeMotion<D>>& motion = nodes.motion;
   send_from_hosts(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, may_host_});
   for (const SmallMassNode& small_mass_node : small_) {
     if (!own.has(small_mass_node.node))
@@ -186,22 +187,23 @@ void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, co
       mean.v += share * motion[static_cast<std::size_t>(host)].v;
       mean.change += share * motion[static_cast<std::size_t>(host)].change;
     });
-    conditions.apply(small_mass_node.node, kick, small_mass_node.mass, mean, work);
+    conditions.apply(nodes.of_field(small_mass_node.node), kick, small_mass_node.mass, mean, work);
     motion[static_cast<std::size_t>(small_mass_node.node)] = mean;
   }
 }
 
 template <int D>
 void SmallMassNodes<D>::extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid,
-                                             SparseRows<NodeMotion<D>>& motion)
+                                             Nodes<D>& nodes)
 {
+  SparseRows<NodeMotion<D>>& motion = nodes.remapped;
   send_from_hosts(motion, OfMarked{[](auto& row) { return std::tie(row.v); }, may_host_});
   for (const SmallMassNode& small_mass_node : small_) {
     if (!own.has(small_mass_node.node))
       continue;
     Vec<D> mean = Vec<D>::Zero();
     for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) { mean += share * motion[static_cast<std::size_t>(host)].v; });
-    motion[static_cast<std::size_t>(small_mass_node.node)].v = conditions.held(small_mass_node.node, mid, mean);
+    motion[static_cast<std::size_t>(small_mass_node.node)].v = conditions.held(nodes.of_field(small_mass_node.node), mid, mean);
   }
 }
 

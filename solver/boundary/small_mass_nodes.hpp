@@ -27,11 +27,10 @@ class SmallMassNodes {
   void lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
   /// Sets the motion of the nodes of small mass: the mean motion of their hosts, under the boundary conditions, which act on the mass of
   /// the node itself.  Their work is added to `work`.
-  void extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions,
-                   SparseRows<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work);
+  void extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions, Nodes<D>& nodes,
+                   ExactSums<BoundaryWork>& work);
   /// Sets the velocity `v` only, without work.
-  void extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid,
-                            SparseRows<NodeMotion<D>>& motion);
+  void extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid, Nodes<D>& nodes);
   Index size() const noexcept { return static_cast<Index>(small_.size()); }
 
  private:

@@ -26,7 +26,7 @@ void ContactNodes<D>::act(const Kick& kick, BoundaryConditions<D>& conditions, s
       const auto n = static_cast<std::size_t>(at.node);
       const auto side = [&](Index field) {
         const Nodes<D>& nodes = fields[static_cast<std::size_t>(field)].nodes;
-        return Side<D>{conditions, at.node, kick.to, nodes.sum[n].mass, nodes.motion[n].v};
+        return Side<D>{conditions, nodes.of_field(at.node), kick.to, nodes.sum[n].mass, nodes.motion[n].v};
       };
       const auto limit = [&](Real pressure) { return law.friction * pressure + law.cohesion * at.area * kick.length(); };
       const Exchange<D> by = exchange(side(law.first), side(law.second), at.normal, limit);
@@ -37,7 +37,7 @@ void ContactNodes<D>::act(const Kick& kick, BoundaryConditions<D>& conditions, s
         Nodes<D>& nodes = fields[static_cast<std::size_t>(field)].nodes;
         const Vec<D> change = impulse / nodes.sum[n].mass;
         nodes.motion[n].v += change, nodes.motion[n].change += change;
-        conditions.apply(at.node, kick, nodes.sum[n].mass, nodes.motion[n], work);
+        conditions.apply(nodes.of_field(at.node), kick, nodes.sum[n].mass, nodes.motion[n], work);
       };
       const Vec<D> impulse = by.pressed + by.rubbed;
       push(law.first, impulse);
@@ -59,12 +59,14 @@ void ContactNodes<D>::hold(Real time, const BoundaryConditions<D>& conditions, s
       v_first.v = v_first.change, v_second.v = v_second.change;
       continue;
     }
-    const auto side = [&](const Nodes<D>& nodes) { return Side<D>{conditions, at.node, time, nodes.sum[n].mass, nodes.remapped[n].v}; };
+    const auto side = [&](const Nodes<D>& nodes) {
+      return Side<D>{conditions, nodes.of_field(at.node), time, nodes.sum[n].mass, nodes.remapped[n].v};
+    };
     const auto all_or_nothing = [&](Real) { return at.sticks ? std::numeric_limits<Real>::infinity() : 0; };
     const Exchange<D> by = exchange(side(first), side(second), at.normal, all_or_nothing);
     const Vec<D> impulse = by.pressed + by.rubbed;
-    v_first.v = conditions.held(at.node, time, v_first.v + impulse / first.sum[n].mass);
-    v_second.v = conditions.held(at.node, time, v_second.v - impulse / second.sum[n].mass);
+    v_first.v = conditions.held(first.of_field(at.node), time, v_first.v + impulse / first.sum[n].mass);
+    v_second.v = conditions.held(second.of_field(at.node), time, v_second.v - impulse / second.sum[n].mass);
   }
 }
 

@@ -9,8 +9,6 @@ namespace talus {
 
 namespace {
 
-/// A side without particles reaches nowhere.
-constexpr Real nowhere = -std::numeric_limits<Real>::infinity();
 constexpr Real unlimited = std::numeric_limits<Real>::infinity();
 
 /// The cells within two rings of each node of a pair, not around the tips of cuts, where both sides are one.
@@ -111,22 +109,13 @@ void CutNodes<D>::tie(Real time, Real kick, const OwnNodes& own, Nodes<D>& nodes
 template <int D>
 void CutNodes<D>::find_reach(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips)
 {
-  const auto bodies = static_cast<Index>(strips.keys()) / std::max(strips.blocks(), Index{1});
+  std::vector<Index> bodies(strips.keys() / std::max(to_size(strips.blocks()), std::size_t{1}));
+  std::iota(bodies.begin(), bodies.end(), Index{0});
   parallel_for_uneven(static_cast<Index>(2 * pairs_.size()), [&](Index k) {
     const CutNode<D>& at = pairs_[static_cast<std::size_t>(k / 2)];
     const Index n = k % 2 == 0 ? at.first : at.second;
     const Vec<D> outwards = k % 2 == 0 ? at.normal : Vec<D>(-at.normal);
-    const Real beside = mesh.node_size(n) / 2;
-    Real reach = nowhere;
-    for (const Index c : cells_of_side_[k])
-      for (Index body = 0; body < bodies; ++body)
-        for_each_particle_in(strips, body, c, [&](const StripColumns<D>& columns, std::size_t p) {
-          const Vec<D> arm = columns.x.of(p) - mesh.node(n);
-          const Real along = outwards.dot(arm);
-          if (arm.squaredNorm() - along * along <= beside * beside)
-            reach = std::max(reach, along + half_width<D>(columns.F.of(p), columns.volume0.of(p), outwards));
-        });
-    reach_[static_cast<std::size_t>(n)] = reach;
+    reach_[static_cast<std::size_t>(n)] = reach_beside<D>(strips, bodies, cells_of_side_[k], mesh.node(n), outwards, mesh.node_size(n) / 2);
   });
   back_(reach_, Numbers{}, [](Real& reach, Real other) { reach = std::max(reach, other); });
   for_each_own(own, [&](Index n) { half(n).reach = reach_[static_cast<std::size_t>(n)]; });
@@ -137,7 +126,7 @@ void CutNodes<D>::exchange_impulses(CutNode<D>& at, const Kick& kick, BoundaryCo
 {
   const CutLaw& law = laws_[static_cast<std::size_t>(at.law)];
   Half &first = half(at.first), &second = half(at.second);
-  const auto side = [&](Index n) { return Side<D>{conditions, n, kick.to, half(n).mass, half(n).v}; };
+  const auto side = [&](Index n) { return Side<D>{conditions, of_field(n), kick.to, half(n).mass, half(n).v}; };
   const Vec<D> relative = first.v - second.v;
   Exchange<D> by;
   if (!at.tied)
@@ -158,7 +147,7 @@ void CutNodes<D>::exchange_impulses(CutNode<D>& at, const Kick& kick, BoundaryCo
     Half& one = half(n);
     const Vec<D> change = given / one.mass;
     NodeMotion<D> motion{one.v + change, one.change + change};
-    conditions.apply(n, kick, one.mass, motion, work);
+    conditions.apply(of_field(n), kick, one.mass, motion, work);
     one.v = motion.v, one.change = motion.change;
   };
   push(at.first, impulse);
@@ -175,6 +164,7 @@ void CutNodes<D>::act(const Mesh<D>& mesh, const Kick& kick, const OwnNodes& own
     find_reach(mesh, own, strips);
   for_each_own(own, [&](Index n) {
     half(n).v = nodes.motion[static_cast<std::size_t>(n)].v, half(n).change = nodes.motion[static_cast<std::size_t>(n)].change;
+    half(n).open = nodes.of_field(n).open;
   });
   exchange_halves();
   for (CutNode<D>& at : pairs_) {
@@ -216,13 +206,13 @@ void CutNodes<D>::hold(Real time, const OwnNodes& own, const BoundaryConditions<
     if (at.tied) {
       v_first = v_second = (first.mass * first.v + second.mass * second.v) / (first.mass + second.mass);
     } else {
-      const auto side = [&](Index n) { return Side<D>{conditions, n, time, half(n).mass, half(n).v}; };
+      const auto side = [&](Index n) { return Side<D>{conditions, of_field(n), time, half(n).mass, half(n).v}; };
       const Exchange<D> by = exchange(side(at.first), side(at.second), at.normal, [&](Real) { return at.sticks ? unlimited : 0; });
       const Vec<D> impulse = by.pressed + by.rubbed;
       v_first += impulse / first.mass, v_second -= impulse / second.mass;
     }
-    keep(at.first, conditions.held(at.first, time, v_first));
-    keep(at.second, conditions.held(at.second, time, v_second));
+    keep(at.first, conditions.held(of_field(at.first), time, v_first));
+    keep(at.second, conditions.held(of_field(at.second), time, v_second));
   }
 }
 

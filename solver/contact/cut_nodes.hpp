@@ -60,13 +60,15 @@ class CutNodes {
  private:
   /// What one node of a pair brings to it.
   struct Half {
-    Real mass = 0;   ///< zero if the node does not move by itself [kg]
-    Real reach = 0;  ///< of the particles of its side, out of that side [m]
+    Real mass = 0;          ///< zero if the node does not move by itself [kg]
+    Real reach = 0;         ///< of the particles of its side, out of that side [m]
+    std::uint8_t open = 0;  ///< see Nodes
     Vec<D> momentum = Vec<D>::Zero(), force = Vec<D>::Zero();
     Vec<D> v = Vec<D>::Zero(), change = Vec<D>::Zero();
   };
   Half& half(Index node) noexcept { return halves_[static_cast<std::size_t>(node)]; }
   const Half& half(Index node) const noexcept { return halves_[static_cast<std::size_t>(node)]; }
+  NodeOfField of_field(Index node) const noexcept { return {node, half(node).open}; }
   bool both_move(const CutNode<D>& at) const noexcept { return half(at.first).mass > 0 && half(at.second).mass > 0; }
   void exchange_halves();
   template <class F>

@@ -10,7 +10,7 @@ namespace talus {
 template <int D>
 struct Side {
   const BoundaryConditions<D>& conditions;
-  Index node;
+  NodeOfField at;
   Real time;
   Real mass;
   Vec<D> v;
@@ -18,9 +18,9 @@ struct Side {
   /// direction and of the size expected.  Boundary conditions hold what they hold.
   Real per_impulse(const Vec<D>& push) const
   {
-    if (!conditions.binds(node))
+    if (!conditions.binds(at.node))
       return 1 / mass;
-    const Vec<D> change = conditions.held(node, time, v + push) - v;
+    const Vec<D> change = conditions.held(at, time, v + push) - v;
     return std::max(Real{0}, change.dot(push) / push.squaredNorm()) / mass;
   }
 };

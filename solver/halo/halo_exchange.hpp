@@ -29,7 +29,9 @@ enum class MessageTag : int {
   cut_nodes = 14,
   cut_reach = 15,
   rigid_nodes = 16,
-  rigid_touches = 17
+  rigid_touches = 17,
+  wall_nodes = 18,
+  wall_touches = 19
 };
 
 /// Selects the parts of a row to be sent: the whole row.

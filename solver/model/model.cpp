@@ -58,6 +58,16 @@ void adopt_state(Model<D>& m)
   update_rows(m);
 }
 
+/// The numbers of the bodies of each velocity field.
+template <int D>
+std::vector<std::vector<Index>> bodies_of_field(const Model<D>& m)
+{
+  std::vector<std::vector<Index>> bodies(static_cast<std::size_t>(m.problem.contacts.n_fields));
+  for (Index body = 0; body < m.n_bodies(); ++body)
+    bodies[m.problem.contacts.field_of(body)].push_back(body);
+  return bodies;
+}
+
 template <int D>
 void bind_boundary_conditions(Model<D>& m)
 {
@@ -70,6 +80,7 @@ void bind_boundary_conditions(Model<D>& m)
     for (Index node = 0; node < problem.mesh.n_nodes(); ++node)
       field.nodes.bound[static_cast<std::size_t>(node)] = state.boundary.binds(node) ? 1 : 0;
   }
+  work.walls.begin(problem.mesh, problem.subdomain, *problem.ranks, state.boundary, bodies_of_field(m), work.fields);
   problem.exits.closed.assign(static_cast<std::size_t>(problem.mesh.n_cells()), 0);
   for (const Facet facet : state.boundary.closed_facets(problem.mesh))
     problem.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
@@ -104,10 +115,7 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
   work.cuts.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.cuts);
   work.sums.contacts.resize(problem.contacts.laws.size() + problem.cuts.size());
   state.contacts.resize(work.sums.contacts.size());
-  std::vector<std::vector<Index>> bodies_of_field(static_cast<std::size_t>(problem.contacts.n_fields));
-  for (Index body = 0; body < m.n_bodies(); ++body)
-    bodies_of_field[problem.contacts.field_of(body)].push_back(body);
-  work.rigid.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.rigid, bodies_of_field);
+  work.rigid.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.rigid, bodies_of_field(m));
   work.sums.rigid.resize(problem.rigid.bodies.size());
   work.carriers = TrackedIds(ids_of(problem.loads.on_particles));
   bind_boundary_conditions(m);

@@ -8,6 +8,7 @@
 #include "solver/boundary/velocity_field.hpp"
 #include "solver/contact/contact_nodes.hpp"
 #include "solver/contact/cut_nodes.hpp"
+#include "solver/contact/wall_gaps.hpp"
 #include "solver/loads/loads.hpp"
 #include "solver/rigid/rigid_nodes.hpp"
 #include "solver/state/cell_order.hpp"
@@ -31,6 +32,7 @@ struct Workspace {
   std::vector<VelocityField<D>> fields;  ///< one, unless bodies are in contact
   ContactNodes<D> contact;               ///< nodes at which two fields touch
   CutNodes<D> cuts;                      ///< nodes of cuts and their twins
+  WallGaps<D> walls;                     ///< where material touches walls with gaps
   RigidNodes<D> rigid;                   ///< nodes at which material touches rigid bodies
   StepSums<D> sums;                      ///< sums of the present step
   // Sums over the particles of each body in each block.

@@ -100,11 +100,11 @@ Impulse<D> impulse_of(const Mass<D>& mass, const Vec<D>& normal, Real friction, 
 
 /// What resists an impulse along a change of velocity `push` at a node; zero where a boundary condition holds it, which then no impulse moves.
 template <int D>
-Real resistance(const BoundaryConditions<D>& conditions, Index node, Real time, Real mass, const Vec<D>& v, const Vec<D>& push)
+Real resistance(const BoundaryConditions<D>& conditions, NodeOfField at, Real time, Real mass, const Vec<D>& v, const Vec<D>& push)
 {
-  if (!conditions.binds(node) || push.isZero(0))
+  if (!conditions.binds(at.node) || push.isZero(0))
     return mass;
-  const Vec<D> change = conditions.held(node, time, v + push) - v;
+  const Vec<D> change = conditions.held(at, time, v + push) - v;
   const Real admitted = change.dot(push) / push.squaredNorm();
   constexpr Real least = 1e-6;
   return admitted > least ? mass / admitted : 0;
@@ -142,7 +142,9 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
       const auto n = static_cast<std::size_t>(at.node);
       const Vec<D> v = nodes.motion[n].v, relative = v - state.velocity_at(at.touch.place);
       const Vec<D> sliding = relative - relative.dot(at.touch.normal) * at.touch.normal;
-      const auto along = [&](const Vec<D>& push) { return resistance(conditions, at.node, kick.to, nodes.sum[n].mass, v, push); };
+      const auto along = [&](const Vec<D>& push) {
+        return resistance(conditions, nodes.of_field(at.node), kick.to, nodes.sum[n].mass, v, push);
+      };
       masses.push_back({v, along(at.touch.normal * std::max(relative.norm(), Real{1e-12})), along(-sliding)});
     }
     const auto by_node = [&](std::size_t k, const Twist<D>& q) {
@@ -202,7 +204,7 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
       const auto n = static_cast<std::size_t>(at.node);
       const Vec<D> change = (by.pressed + by.rubbed) / nodes.sum[n].mass;
       nodes.motion[n].v += change, nodes.motion[n].change += change;
-      conditions.apply(at.node, kick, nodes.sum[n].mass, nodes.motion[n], work);
+      conditions.apply(nodes.of_field(at.node), kick, nodes.sum[n].mass, nodes.motion[n], work);
     }
   }
 }
@@ -214,14 +216,15 @@ void RigidNodes<D>::hold(Real time, const BoundaryConditions<D>& conditions, std
   for (const RigidNode<D>& at : nodes_) {
     if (at.pressed.isZero(0))
       continue;
-    NodeMotion<D>& remapped = fields[static_cast<std::size_t>(at.field)].nodes.remapped[static_cast<std::size_t>(at.node)];
+    Nodes<D>& nodes = fields[static_cast<std::size_t>(at.field)].nodes;
+    NodeMotion<D>& remapped = nodes.remapped[static_cast<std::size_t>(at.node)];
     if (!at.sticks && !at.rubbed.isZero(0)) {
       remapped.v = remapped.change;
       continue;
     }
     const Vec<D> u = states[static_cast<std::size_t>(at.rigid)].velocity_at(at.touch.place), relative = remapped.v - u;
     if (const Real approach = -relative.dot(at.touch.normal); approach > 0)
-      remapped.v = conditions.held(at.node, time, at.sticks ? u : Vec<D>(remapped.v + approach * at.touch.normal));
+      remapped.v = conditions.held(nodes.of_field(at.node), time, at.sticks ? u : Vec<D>(remapped.v + approach * at.touch.normal));
   }
 }
 

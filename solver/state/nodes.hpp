@@ -122,6 +122,12 @@ struct alignas(64) ProjectedNodeMotion {
   Mat<D> L = Mat<D>::Zero();       ///< velocity gradient [1/s]
 };
 
+/// A node of a velocity field as boundary conditions see it.
+struct NodeOfField {
+  Index node = none;
+  std::uint8_t open = 0;  ///< see Nodes
+};
+
 /// The times of the old and the new velocities [s], between which forces act.
 struct Kick {
   Real from{}, to{};
@@ -136,6 +142,8 @@ struct Nodes {
   std::vector<std::uint8_t> active;    ///< nodes with enough mass for a motion of their own
   /// Nodes with a boundary condition: no local damping, and the net force is known only after the condition has acted.
   std::vector<std::uint8_t> bound;
+  /// Planes of walls that no material touches in this step, one bit for each one-sided plane of the node; empty without walls with gaps.
+  std::vector<std::uint8_t> open;
   std::vector<std::uint8_t> slides;  ///< nodes that boundary conditions press against a wall with friction, and that slide
   std::vector<Vec<D>> felt;          ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
   SparseRows<Vec<D>> surface_loads;  ///< forces of loads on surfaces that cut cells [N]; empty without such loads
@@ -146,6 +154,7 @@ struct Nodes {
   Real least_share_of_gross{};  ///< limit of mass relative to `gross`
 
   explicit Nodes(Index n_nodes = 0) : sum(static_cast<std::size_t>(n_nodes)), motion(sum.size()), active(sum.size()), in_use(n_nodes) {}
+  NodeOfField of_field(Index node) const noexcept { return {node, open.empty() ? std::uint8_t{0} : open[static_cast<std::size_t>(node)]}; }
 };
 
 }  // namespace talus

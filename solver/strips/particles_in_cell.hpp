@@ -1,6 +1,7 @@
 #pragma once
 // The particles of a cell, and how far each of them reaches.
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "solver/strips/particle_strips.hpp"
@@ -40,6 +41,26 @@ Real half_width(const Mat3& F, Real volume0, const Vec<D>& along) noexcept
   const Mat<D> part = F.template topLeftCorner<D, D>();
   const Real side = D == 2 ? std::sqrt(volume0) : std::cbrt(volume0);
   return 0.5 * side * (part.transpose() * along).norm();
+}
+
+/// No particle reaches anywhere.
+inline constexpr Real nowhere = -std::numeric_limits<Real>::infinity();
+
+/// How far the particles of bodies in these cells reach along a unit vector from a node [m], of those whose centres lie at most `beside` [m]
+/// from the line through the node.
+template <int D>
+Real reach_beside(const ParticleStrips<D>& strips, std::span<const Index> bodies, std::span<const Index> cells, const Vec<D>& node,
+                  const Vec<D>& along, Real beside)
+{
+  Real reach = nowhere;
+  for (const Index c : cells)
+    for_each_particle_in<D>(strips, bodies, c, [&](const StripColumns<D>& columns, std::size_t p) {
+      const Vec<D> arm = columns.x.of(p) - node;
+      const Real height = along.dot(arm);
+      if (arm.squaredNorm() - height * height <= beside * beside)
+        reach = std::max(reach, height + half_width<D>(columns.F.of(p), columns.volume0.of(p), along));
+    });
+  return reach;
 }
 
 }  // namespace talus

@@ -213,7 +213,7 @@ class TransferOf final : public Transfer<D> {
       project_motion(
           kernel_.node_operators(), of.extension, nodes.in_use, nodes.motion, [&] { of.ghosts.motion.take(nodes.motion, Whole{}); },
           of.projected);
-      m.state.boundary.apply(kick, of.projected.sum, of.projected.motion, m.work.sums.beyond_nodes);
+      m.state.boundary.apply(kick, nodes, of.projected.sum, of.projected.motion, m.work.sums.beyond_nodes);
     }
   }
 
@@ -345,13 +345,13 @@ class TransferOf final : public Transfer<D> {
       const Vec<D> v = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
       nodes.remapped[i] = {v, nodes.motion[i].v};
     });
-    m.state.boundary.hold(mid, nodes.slides, nodes.remapped);
+    m.state.boundary.hold(mid, nodes);
   }
   /// Moves nodes of small mass with their hosts, and starts to send the remapped velocities to other ranks.
   void send_remapped_velocity(Model<D>& m, Rows& of, Real mid)
   {
     Nodes<D>& nodes = nodes_of(m, of);
-    m.work.fields[of.field].small_mass_nodes.extrapolate_velocity(m.problem.mesh, m.problem.own, m.state.boundary, mid, nodes.remapped);
+    m.work.fields[of.field].small_mass_nodes.extrapolate_velocity(m.problem.mesh, m.problem.own, m.state.boundary, mid, nodes);
     of.ghosts.motion.send(nodes.remapped, Whole{});
     add_ranges(nodes.in_use.own(), m.work.sums.remap, [&](Index n) { return remap_work(nodes, n); });
   }

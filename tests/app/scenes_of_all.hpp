@@ -207,7 +207,8 @@ inline std::vector<SceneCase> scenes_of_all()
             "  - {name: stone, material: stuff, shape: {type: box, low: [1.3, 0], high: [2, 0.5]}, particles_per_cell: 3}\n"
             "  - {name: fill, material: other, shape: {type: box, low: [0, 1.3], high: [1, 1.9]}, particles_per_cell: 4, velocity: [1, "
             "-4], f_bar: true}\n",
-        .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3, during: [one, three]}, {type: roller, on: x_min, during: "
+        .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3, gap: true, during: [one, three]}, {type: roller, on: "
+                      "x_min, during: "
                       "[two]}, {type: fixed, on: x_max}, {type: fixed, on: y_max}]\n",
         .time = "time: {max_step: 1.4e-3}\nstages:\n  - {type: run, name: one, duration: 0.014}\n"
                 "  - {type: run, name: two, duration: 0.0098, appear: [fill], change: [{body: low, material: other}]}\n"
@@ -236,6 +237,9 @@ inline std::vector<SceneCase> scenes_of_all()
       "  - {between: [high, right]}\n";
   all.push_back({"contacts", contacts});
   SceneParts contacts_tied = two_materials;
+  contacts_tied.boundaries =
+      "boundaries: [{type: friction, on: y_min, coefficient: 0.3, gap: true}, {type: friction, on: x_min, "
+      "coefficient: 0, gap: true}, {type: fixed, on: x_max}]\n";
   contacts_tied.more = "kernel: umls\ncontacts:\n  - {between: [high, low], friction: 0.3}\n  - {between: [right, low], tied: true}\n";
   all.push_back({"contacts_umls", contacts_tied});
   SceneParts cuts = two_materials;
@@ -288,6 +292,7 @@ inline std::vector<SceneCase> scenes_of_all()
   two_in_3d.law = two_materials.law;
   two_in_3d.bodies += "  - {name: high, material: other, shape: {type: box, low: [0, 1, 0], high: [1.4, 1.4, 1]}, particles_per_cell: 4}\n";
   all.push_back({"two_materials_solid", two_in_3d});
+  two_in_3d.boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3, gap: true}, {type: roller, on: z_max}]\n";
   two_in_3d.more = "kernel: linear\ncontacts: [{between: [low, high], friction: 0.3}]\n";
   all.push_back({"contacts_solid", two_in_3d});
   SceneParts cuts_in_3d = two_in_3d;

@@ -108,9 +108,9 @@ TEST(AbsorbingBoundaries, ASideGivesWhatTheFreeFieldDoes)
     add_on<2>(ground.walls, ground.mesh, "x_max", FreeField<2>(column(), 0));
     ground.walls.finalize();
     ground.walls.begin_stage(true, 0);
-    expect_near(ground.walls.held(static_cast<Index>(ground.node({2, 1})), 0, {3, 4}), {0, 4});  // a roller
+    expect_near(ground.walls.held({static_cast<Index>(ground.node({2, 1}))}, 0, {3, 4}), {0, 4});  // a roller
     ground.walls.begin_stage(false, 7);
-    expect_near(ground.walls.held(static_cast<Index>(ground.node({2, 1})), 0, {3, 4}), {3, 4});
+    expect_near(ground.walls.held({static_cast<Index>(ground.node({2, 1}))}, 0, {3, 4}), {3, 4});
 
     const Real mass = 2, kick = 0.25, dt = 0.2;
     ColumnBase<2> moves;
@@ -174,9 +174,9 @@ TEST(AbsorbingBoundaries, AnInclinedFloorHoldsAloneOnceTheSideBesideItLetsGo)
     for (const bool now_side : {side_first, !side_first})
       add_on(walls, mesh, now_side ? "x_max" : "y_min", now_side ? AnyCondition<2>(side) : AnyCondition<2>(Roller<2>{}));
     walls.finalize();
-    expect_near(walls.held(corner, 0, v), {0, 0});
+    expect_near(walls.held({corner}, 0, v), {0, 0});
     walls.begin_stage(false, 0);
-    expect_near(walls.held(corner, 0, v), v - v.dot(normal) * normal);
+    expect_near(walls.held({corner}, 0, v), v - v.dot(normal) * normal);
   }
 }
 
@@ -186,11 +186,11 @@ TEST(AbsorbingBoundaries, RecordsBeginWithTheShaking)
   add_on<2>(ground.walls, ground.mesh, "y_min", PrescribedVelocity<2>{{{1, 2}, {}, record_of_velocity({0, 1, 2}, {0, 10, 0})}});
   ground.walls.finalize();
   const auto n = static_cast<Index>(ground.node({1, 0}));
-  expect_near(ground.walls.held(n, 0.5, {9, 9}), {0, 0});
+  expect_near(ground.walls.held({n}, 0.5, {9, 9}), {0, 0});
   ground.walls.begin_stage(false, 3);
-  expect_near(ground.walls.held(n, 3.5, {9, 9}), {5, 10});
+  expect_near(ground.walls.held({n}, 3.5, {9, 9}), {5, 10});
   ground.walls.begin_stage(true, 4);
-  expect_near(ground.walls.held(n, 4.5, {9, 9}), {0, 0});
+  expect_near(ground.walls.held({n}, 4.5, {9, 9}), {0, 0});
 }
 
 TEST(AbsorbingBoundaries, WhatWasKeptFitsOnlyIfItHasANumberForEachDashpot)

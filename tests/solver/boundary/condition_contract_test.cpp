@@ -198,7 +198,7 @@ TYPED_TEST(ConditionContract, MeetsEveryOtherInACorner)
         EXPECT_LT((all.momentum() - before - all.impulse()).norm(), rounding * before.norm());
         for (Index n = 0; n < all.mesh.n_nodes(); ++n) {
           const Vec<2> v = all.nodes.motion[static_cast<std::size_t>(n)].v;
-          EXPECT_LT((all.conditions.held(n, MovingNodes::dt / 2, v) - v).norm(), rounding);
+          EXPECT_LT((all.conditions.held({n}, MovingNodes::dt / 2, v) - v).norm(), rounding);
           if (all.mesh.node(n).norm() == 0)
             velocity.push_back(v);
         }

@@ -107,9 +107,10 @@ TEST(NodesAtWalls, FrictionRubsByItsCoefficientTimesTheImpulse)
 
   // it rubs now, so that what is remapped is replaced by the step's own
   const std::size_t n = square.node({0.5, 0});
-  square.nodes.motion[n] = {{5, 6}, {7, 8}};
-  square.walls.hold(0, square.nodes.slides, square.nodes.motion);
-  expect_near(square.nodes.motion[n].v, {7, 8});
+  square.nodes.remapped.resize(square.nodes.sum.size());
+  square.nodes.remapped[n] = {{5, 6}, {7, 8}};
+  square.walls.hold(0, square.nodes);
+  expect_near(square.nodes.remapped[n].v, {7, 8});
 }
 
 TEST(NodesAtWalls, FrictionSticksExactlyAndLetsGo)
@@ -124,12 +125,51 @@ TEST(NodesAtWalls, FrictionSticksExactlyAndLetsGo)
 
   // it does not rub any more: held back from going in, not from leaving
   const std::size_t n = square.node({0.5, 0});
-  square.nodes.motion[n] = {{5, -6}, {7, 8}};
-  square.walls.hold(0, square.nodes.slides, square.nodes.motion);
-  expect_near(square.nodes.motion[n].v, {5, 0});
-  square.nodes.motion[n] = {{5, 6}, {7, 8}};
-  square.walls.hold(0, square.nodes.slides, square.nodes.motion);
-  expect_near(square.nodes.motion[n].v, {5, 6});
+  square.nodes.remapped.resize(square.nodes.sum.size());
+  square.nodes.remapped[n] = {{5, -6}, {7, 8}};
+  square.walls.hold(0, square.nodes);
+  expect_near(square.nodes.remapped[n].v, {5, 0});
+  square.nodes.remapped[n] = {{5, 6}, {7, 8}};
+  square.walls.hold(0, square.nodes);
+  expect_near(square.nodes.remapped[n].v, {5, 6});
+}
+
+TEST(NodesAtWalls, PlanesThatNothingTouchesDoNotAct)
+{
+  Square square;
+  square.hold("x_min", Friction<2>{0});
+  square.hold("y_min", Friction<2>{0.25, true});
+  square.walls.finalize();
+  const auto planes = square.walls.gap_planes();
+  ASSERT_EQ(planes.size(), 3u) << "of three nodes on the one wall with a gap";
+  for (const auto& plane : planes)
+    expect_near(plane.normal, {0, -1});
+  const std::size_t n = square.node({0, 0});
+  const auto of_corner = std::ranges::find(planes, static_cast<Index>(n), [](const auto& plane) { return plane.node; });
+  ASSERT_NE(of_corner, planes.end());
+
+  square.nodes.open.assign(square.nodes.sum.size(), 0);
+  square.nodes.open[n] = static_cast<std::uint8_t>(1 << of_corner->number);
+  square.nodes.remapped.resize(square.nodes.sum.size());
+  const Vec<2> into_both(-2, -4), out_of_one(0, -4);
+  expect_near(square.meet({0, 0}, into_both, {0, 0}).v, out_of_one);
+  expect_near(square.first().impulse, {4, 0});
+  const NodeOfField corner = square.nodes.of_field(static_cast<Index>(n));
+  expect_near(square.walls.held(corner, 0, into_both), out_of_one);
+  expect_near(square.walls.held({corner.node}, 0, into_both), {0, 0});
+  square.nodes.remapped[n] = {into_both, {7, 8}};
+  square.nodes.slides[n] = 0;
+  square.walls.hold(0, square.nodes);
+  expect_near(square.nodes.remapped[n].v, out_of_one);
+  NodeMotion<2> alone{into_both, {0, 0}};
+  square.walls.apply(corner, Square::kick, 4, alone, square.work);
+  expect_near(alone.v, out_of_one);
+  SparseRows<ProjectedNodeSum<2>> sums(square.nodes.sum.size());
+  SparseRows<ProjectedNodeMotion<2>> projected(sums.size());
+  sums[n].mass = 5, sums[n].lightest = 1;
+  projected[n].v = into_both;
+  square.walls.apply(Square::kick, square.nodes, sums, projected, square.work);
+  expect_near(projected[n].v, out_of_one);
 }
 
 TEST(NodesAtWalls, ARollerAndAFrictionWallInACornerBothHold)
@@ -142,9 +182,9 @@ TEST(NodesAtWalls, ARollerAndAFrictionWallInACornerBothHold)
   expect_near(now.v, {0, 0});
   expect_near(square.walls.conditions()[0].impulse, {6, 0});
   expect_near(square.walls.conditions()[1].impulse, {0, 8});
-  expect_near(square.walls.held(static_cast<Index>(square.node({0, 0})), 0, {5, -6}), {0, 0});
-  expect_near(square.walls.held(static_cast<Index>(square.node({0, 0})), 0, {5, 6}), {0, 6});
-  expect_near(square.walls.held(static_cast<Index>(square.node({1, 1})), 0, {5, -6}), {5, -6});
+  expect_near(square.walls.held({static_cast<Index>(square.node({0, 0}))}, 0, {5, -6}), {0, 0});
+  expect_near(square.walls.held({static_cast<Index>(square.node({0, 0}))}, 0, {5, 6}), {0, 6});
+  expect_near(square.walls.held({static_cast<Index>(square.node({1, 1}))}, 0, {5, -6}), {5, -6});
 }
 
 /// Two facets of a floor that bends by an angle: the node between has one normal or two.
@@ -160,7 +200,7 @@ Vec<2> after_a_bend(Real degrees, const Vec<2>& v)
   walls.finalize();
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     if (mesh.node(n).norm() < 1e-9)
-      return walls.held(n, 0, v);
+      return walls.held({n}, 0, v);
   return v;
 }
 
@@ -208,7 +248,7 @@ TEST(NodesAtWalls, HatsAndSlavesArePushedWithTheirOwnMass)
   SparseRows<ProjectedNodeMotion<2>> projected(sums.size());
   sums[n].mass = 5, sums[n].lightest = 1;
   projected[n].v = {1, 1};
-  square.walls.apply(Square::kick, sums, projected, square.work);
+  square.walls.apply(Square::kick, square.nodes, sums, projected, square.work);
   square.walls.keep_impulses();
   expect_near(projected[n].v, {3, 1});
   expect_near(projected[n].change, {2, 0});
@@ -216,12 +256,12 @@ TEST(NodesAtWalls, HatsAndSlavesArePushedWithTheirOwnMass)
   expect_near(square.first().impulse, {10, 0});
 
   NodeMotion<2> small_mass_node{{2, 1}, {0, 0}};
-  square.walls.apply(static_cast<Index>(n), Square::kick, 4, small_mass_node, square.work);
+  square.walls.apply({static_cast<Index>(n)}, Square::kick, 4, small_mass_node, square.work);
   square.walls.keep_impulses();
   expect_near(small_mass_node.v, {3, 1});
   expect_near(square.first().impulse, {14, 0});
   NodeMotion<2> free{{2, 1}, {0, 0}};
-  square.walls.apply(static_cast<Index>(square.node({1, 1})), Square::kick, 4, free, square.work);
+  square.walls.apply({static_cast<Index>(square.node({1, 1}))}, Square::kick, 4, free, square.work);
   expect_near(free.v, {2, 1});
 }
 

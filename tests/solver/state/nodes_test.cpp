@@ -49,7 +49,7 @@ TEST(SmallMassNodes, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
     row = {Vec<2>(3, -2), Vec<2>(0.5, 0)};
   BoundaryConditions<2> none_at_all;
   ExactSums<BoundaryWork> work;
-  small_mass_nodes.extrapolate(mesh, all_nodes(mesh), Kick{}, none_at_all, nodes.motion, work);
+  small_mass_nodes.extrapolate(mesh, all_nodes(mesh), Kick{}, none_at_all, nodes, work);
   for (const auto& row : nodes.motion)
     EXPECT_LT((row.v - Vec<2>(3, -2)).norm() + (row.change - Vec<2>(0.5, 0)).norm(), 1e-14) << "a uniform motion stays one";
 }
