@@ -43,6 +43,9 @@ struct PageFrame {
   std::optional<BlockId> body;                 ///< nothing if there is one body
   std::optional<BlockId> growth;               ///< by how many hundredths each particle is drawn larger than the radius; nothing if none is
   std::vector<std::optional<BlockId>> fields;  ///< one for each field; nothing if this frame does not have it
+  /// Seven numbers for each rigid body: how far the middle of its box in the page has moved [m], and the quaternion x, y, z, w by which the
+  /// body has turned about it; nothing if they are not known.
+  std::optional<BlockId> rigid;
 };
 
 struct PageParticles {
@@ -67,6 +70,14 @@ struct PageGround {
   PagePlaces x;
   BlockId rigid = 0;   ///< 3-D: triples of nodes; 2-D: pairs
   BlockId layers = 0;  ///< pairs of nodes: boundaries of layers
+};
+
+/// A body that does not deform, where it is at the beginning.
+struct PageRigid {
+  std::string name;
+  std::int64_t nodes = 0;
+  PagePlaces x;
+  BlockId triangles = 0;  ///< triples of nodes: they fill it in 2-D, in 3-D they are its surface
 };
 
 struct PageTable {
@@ -94,6 +105,7 @@ struct Page {
   std::optional<PageParticles> particles;
   std::optional<PageMesh> mesh;
   std::optional<PageGround> ground;
+  std::vector<PageRigid> rigid;
   std::optional<PageTable> history, run_out;
   std::vector<PageMetric> metrics;
   std::vector<PageBlock> blocks;

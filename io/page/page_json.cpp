@@ -20,22 +20,25 @@ class PageWriter {
 
   PageJson whole() const
   {
-    return {{"format", page_format},
-            {"title", page_.title},
-            {"name", page_.name},
-            {"dimension", page_.dimension},
-            {"up", components_of(page_.up)},
-            {"live", page_.live ? PageJson{{"interval", *page_.live}} : PageJson()},
-            {"summary", page_.summary.empty() ? PageJson() : PageJson::parse(page_.summary)},
-            {"scene", {{"file", page_.scene_file}, {"text", page_.scene_text}}},
-            {"warnings", list(page_.warnings)},
-            {"notes", page_.notes},
-            {"particles", of(page_.particles)},
-            {"mesh", of(page_.mesh)},
-            {"ground", of(page_.ground)},
-            {"history", of(page_.history)},
-            {"run_out", of(page_.run_out)},
-            {"metrics", list(page_.metrics)}};
+    PageJson page{{"format", page_format},
+                  {"title", page_.title},
+                  {"name", page_.name},
+                  {"dimension", page_.dimension},
+                  {"up", components_of(page_.up)},
+                  {"live", page_.live ? PageJson{{"interval", *page_.live}} : PageJson()},
+                  {"summary", page_.summary.empty() ? PageJson() : PageJson::parse(page_.summary)},
+                  {"scene", {{"file", page_.scene_file}, {"text", page_.scene_text}}},
+                  {"warnings", list(page_.warnings)},
+                  {"notes", page_.notes},
+                  {"particles", of(page_.particles)},
+                  {"mesh", of(page_.mesh)},
+                  {"ground", of(page_.ground)},
+                  {"history", of(page_.history)},
+                  {"run_out", of(page_.run_out)},
+                  {"metrics", list(page_.metrics)}};
+    if (!page_.rigid.empty())
+      page["rigid"] = list(page_.rigid);
+    return page;
   }
 
  private:
@@ -94,6 +97,8 @@ class PageWriter {
     object["fields"] = PageJson::array();
     for (const std::optional<BlockId>& field : frame.fields)
       object["fields"].push_back(block(field));
+    if (!page_.rigid.empty())
+      object["rigid"] = block(frame.rigid);
     return object;
   }
   PageJson of(const PageParticles& particles) const
@@ -121,6 +126,13 @@ class PageWriter {
     add(ground.x, object);
     object["rigid"] = block(ground.rigid);
     object["layers"] = block(ground.layers);
+    return object;
+  }
+  PageJson of(const PageRigid& body) const
+  {
+    PageJson object{{"name", body.name}, {"count", body.nodes}};
+    add(body.x, object);
+    object["triangles"] = block(body.triangles);
     return object;
   }
   PageJson of(const PageTable& table) const

@@ -12,6 +12,9 @@ export const MAPS = {
 /** Okabe and Ito (2008), without black; pairs stay apart with any kind of colour vision. */
 export const DISTINCT = rows('e69f00 56b4e9 009e73 d55e00 cc79a7 0072b2 f0e442 999999');
 
+/** Rigid bodies, as talus render has them. */
+export const RIGID = [128, 136, 148];
+
 export const css = ([r, g, b]) => `rgb(${Math.round(r)} ${Math.round(g)} ${Math.round(b)})`;
 
 /** Colour at t in [0, 1], straight between supports: [r, g, b] of 255. */

@@ -268,6 +268,14 @@ function make_display_group(run, state) {
           'ground',
         )
       : null,
+    run.rigid
+      ? el(
+          'label',
+          {class: 'tick'},
+          el('input', {type: 'checkbox', name: 'rigid', change: ({target}) => state.set({rigid: target.checked})}),
+          'rigid bodies',
+        )
+      : null,
     run.dimension === 3
       ? el(
           'label',
@@ -279,7 +287,7 @@ function make_display_group(run, state) {
   );
   const show = () => {
     const choices = state.get();
-    for (const name of ['size', 'mesh', 'ground', 'orthographic']) show_value(root, name, choices[name]);
+    for (const name of ['size', 'mesh', 'ground', 'rigid', 'orthographic']) show_value(root, name, choices[name]);
   };
   state.listen(show);
   show();

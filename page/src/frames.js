@@ -73,8 +73,10 @@ export function make_frames(particles, blocks) {
     });
   /** Uint32Array */
   const ids = (f) => cached(`ids ${f}`, () => blocks.numbers(frames[f].id));
+  /** Float32Array, 7 a rigid body, or null where they are not known */
+  const rigid = (f) => cached(`rigid ${f}`, async () => optional(frames[f].rigid));
 
-  return {places, steps, ids};
+  return {places, steps, ids, rigid};
 }
 
 /** Number of the body of particle p of a frame. */

@@ -1,15 +1,26 @@
 // What colours mean: the map with its values, or the bodies with theirs.
-import {DISTINCT, css, gradient} from './colours.js';
+import {DISTINCT, RIGID, css, gradient} from './colours.js';
 import {el, number, unit} from './dom.js';
+
+const MOST_RIGID = 6; // that are named one by one: all have the same colour
+
+/** Names of rigid bodies, or how many there are. */
+export const rigid_names = (rigid) => (rigid.length > MOST_RIGID ? [`${rigid.length} bodies`] : rigid.map(({name}) => name));
+
+function entry(colour, name, law) {
+  const swatch = el('i');
+  swatch.style.background = css(colour);
+  return el('li', {}, swatch, name, el('small', {}, law ? ` ${law}` : ''));
+}
 
 export function make_legend(element) {
   let shown = null;
   return {
     last: () => shown,
-    /** @param {{field: object|null, range: number[], map: string, bodies: object[], missing: boolean}} what field null: by body */
+    /** @param {{field: object|null, range: number[], map: string, bodies: object[], rigid: object[], missing: boolean}} what field null: by body */
     show(what) {
       shown = what;
-      const {field, range, map, bodies, missing} = what;
+      const {field, range, map, bodies, rigid, missing} = what;
       element.hidden = false;
       if (!field) {
         element.replaceChildren(
@@ -17,11 +28,8 @@ export function make_legend(element) {
           el(
             'ul',
             {},
-            bodies.map(({name, law}, i) => {
-              const swatch = el('i');
-              swatch.style.background = css(DISTINCT[i % DISTINCT.length]);
-              return el('li', {}, swatch, name, el('small', {}, law ? ` ${law}` : ''));
-            }),
+            bodies.map(({name, law}, i) => entry(DISTINCT[i % DISTINCT.length], name, law)),
+            rigid_names(rigid).map((name) => entry(RIGID, name, 'rigid')),
           ),
         );
         return;

@@ -1,11 +1,12 @@
 // The picture as the reader sees it, with its legend, as a PNG file.
-import {DISTINCT, colour_at, css} from './colours.js';
+import {DISTINCT, RIGID, colour_at, css} from './colours.js';
 import {number, unit} from './dom.js';
+import {rigid_names} from './legend.js';
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 function draw_legend(context, legend, width, height, scale) {
-  const {field, range, map, bodies} = legend;
+  const {field, range, map, bodies, rigid} = legend;
   const left = 16 * scale,
     base = height - 16 * scale,
     wide = Math.min(260 * scale, width / 2),
@@ -13,9 +14,10 @@ function draw_legend(context, legend, width, height, scale) {
   context.font = `${13 * scale}px system-ui, sans-serif`;
   context.fillStyle = style('--text');
   if (!field) {
-    bodies.forEach(({name}, i) => {
-      const y = base - (bodies.length - 1 - i) * 18 * scale;
-      context.fillStyle = css(DISTINCT[i % DISTINCT.length]);
+    const entries = [...bodies.map(({name}, i) => [name, DISTINCT[i % DISTINCT.length]]), ...rigid_names(rigid).map((name) => [name, RIGID])];
+    entries.forEach(([name, colour], i) => {
+      const y = base - (entries.length - 1 - i) * 18 * scale;
+      context.fillStyle = css(colour);
       context.fillRect(left, y - bar, bar, bar);
       context.fillStyle = style('--text');
       context.fillText(name, left + 1.6 * bar, y - 1 * scale);

@@ -5,13 +5,14 @@ import {body_pixels, map_pixels} from './colours.js';
 import {value_of} from './decode.js';
 import {contour_step, ground_material} from './ground_shader.js';
 import {map_texture, particle_material} from './particle_shader.js';
+import {make_rigid_bodies} from './rigid.js';
 import {make_shade_pass} from './shade_pass.js';
 
-/** Everything that is ever shown, in the coordinates of the run [m]. */
-function bounds_of({particles, mesh, ground, dimension}) {
+/** Everything that is ever shown, rigid bodies where they are at the beginning, in the coordinates of the run [m]. */
+function bounds_of({particles, mesh, ground, rigid, dimension}) {
   const box = new THREE.Box3();
   const corner = (numbers) => new THREE.Vector3(numbers[0], numbers[1], dimension === 3 ? numbers[2] : 0);
-  for (const part of [...(particles?.frames ?? []), ...(mesh ? [mesh] : []), ...(ground ? [ground] : [])])
+  for (const part of [...(particles?.frames ?? []), ...(mesh ? [mesh] : []), ...(ground ? [ground] : []), ...(rigid ?? [])])
     if (part.count) box.expandByPoint(corner(part.low)).expandByPoint(corner(part.high));
   return box.isEmpty() ? new THREE.Box3(new THREE.Vector3(0, 0, 0), new THREE.Vector3(1, 1, 1)) : box;
 }
@@ -41,6 +42,7 @@ export function make_view(canvas, run, moved) {
   const mark = make_mark(scene);
   const lines = {};
   let ground = null; // the surface, in 3-D
+  const rigid = make_rigid_bodies(scene, origin, flat);
   scene.add(points);
   const shaded = flat ? null : make_shade_pass(renderer);
   const eye = make_eye(canvas, {
@@ -129,6 +131,7 @@ export function make_view(canvas, run, moved) {
       ground.material.uniforms.cuts.value = u.cuts.value;
       ground.material.uniforms.section.value.copy(u.section.value);
     }
+    rigid.cut(u.cuts.value, u.section.value);
     draw_soon();
   }
 
@@ -182,17 +185,32 @@ export function make_view(canvas, run, moved) {
     draw_soon();
   }
 
-  /** The particle whose middle is nearest to the reader among those under a point of the canvas [CSS pixels], or -1.
-   *  @param {(p: number) => boolean} is_shown */
-  function particle_at(x, y, frame, places, is_shown, size) {
+  /** @param {Float32Array|null} motion as in a frame */
+  function move_rigid(motion) {
+    rigid.move(motion);
+    draw_soon();
+  }
+
+  function show_rigid(yes) {
+    rigid.show(yes);
+    draw_soon();
+  }
+
+  /** The particle whose middle is nearest to the reader among those under a point of the canvas [CSS pixels], or -1 and the name of the rigid
+   *  body there. In 3-D it hides what is behind it; in 2-D it lies behind the particles. @param {(p: number) => boolean} is_shown
+   *  @returns {{particle: number, rigid: string|undefined}} */
+  function found_at(x, y, frame, places, is_shown, size) {
     eye.shape();
     const camera = eye.camera();
     camera.updateMatrixWorld();
     const {clientWidth: width, clientHeight: height} = canvas;
     const to_clip = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     const scale = camera.projectionMatrix.elements[5];
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), camera);
+    const hit = rigid.met_by(ray);
     let found = -1,
-      nearest = Infinity;
+      nearest = hit && !flat ? hit.point.clone().project(camera).z : Infinity;
     for (let p = 0; p < frame.count; ++p) {
       const X = value_of(places[4 * p], frame.low[0], frame.high[0]) - origin.x;
       const Y = value_of(places[4 * p + 1], frame.low[1], frame.high[1]) - origin.y;
@@ -210,7 +228,7 @@ export function make_view(canvas, run, moved) {
         found = p;
       }
     }
-    return found;
+    return {particle: found, rigid: found < 0 ? hit?.name : undefined};
   }
 
   /** @param {number[]|null} place of the particle that is looked at, coordinates of the run */
@@ -240,7 +258,10 @@ export function make_view(canvas, run, moved) {
     show_lines,
     add_ground,
     show_ground,
-    particle_at,
+    add_rigid: rigid.add,
+    move_rigid,
+    show_rigid,
+    found_at,
     set_mark,
     count_drawn: () => renderer.info.render.points,
   };

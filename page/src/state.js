@@ -17,12 +17,14 @@ const CHOICES = {
   highest: ['number', null],
   mesh: ['text', 'outline'], // none, outline or cells
   ground: ['flag', true], // of a mesh of terrain
+  rigid: ['flag', true], // rigid bodies
   size: ['number', 1], // of the particles, times their radius
   orthographic: ['flag', null],
   towards: ['numbers', null], // unit vector from what is looked at to the eye
   target: ['numbers', null],
   height: ['number', null], // of what is seen at the target
   particle: ['number', null], // id
+  clicked: ['text', null], // name of a rigid body
   plots: ['text', null],
   line: ['number', null], // of the scene
 };

@@ -109,13 +109,15 @@ export function start_viewer(run, state, blocks) {
       message.hidden = false;
     }, 150);
     try {
-      const [places, colouring, limiting] = await Promise.all([
+      const [places, motion, colouring, limiting] = await Promise.all([
         frames.places(index),
+        frames.rigid(index),
         field >= 0 ? frames.steps(index, field) : null,
         limiting_field >= 0 ? frames.steps(index, limiting_field) : null,
       ]);
       if (ticket !== wanted) return;
       now = {index, frame, places, colouring, limiting, field};
+      view.move_rigid(motion);
       view.set_particles(frame, places, join_values(frame.count, colouring, limiting));
       apply();
       message.hidden = true;
@@ -143,7 +145,7 @@ export function start_viewer(run, state, blocks) {
       limit: limit_of(particles, choices),
       section: section_of(choices, view.bounds),
     });
-    legend.show({field, range, map: choices.map, bodies: particles.bodies, missing: !by_body && !now.colouring});
+    legend.show({field, range, map: choices.map, bodies: particles.bodies, rigid: run.rigid ?? [], missing: !by_body && !now.colouring});
     clearTimeout(counting);
     counting = setTimeout(count, 120);
     for (const listener of listeners) listener({...now, range});
@@ -166,30 +168,35 @@ export function start_viewer(run, state, blocks) {
 
   function pick(x, y) {
     if (!now) return;
-    const p = view.particle_at(x, y, now.frame, now.places, shown(), state.get().size);
-    if (p < 0) {
-      state.set({particle: null});
+    const {particle, rigid} = view.found_at(x, y, now.frame, now.places, shown(), state.get().size);
+    if (particle < 0) {
+      state.set({particle: null, clicked: rigid ?? null});
       return;
     }
-    frames.ids(now.index).then((ids) => state.set({particle: ids[p]}));
+    frames.ids(now.index).then((ids) => state.set({particle: ids[particle], clicked: null}));
   }
 
-  /** The particle that was clicked: where it is and what its fields are, in this frame. */
+  /** The particle that was clicked: where it is and what its fields are, in this frame; or the name of the rigid body that was. */
   async function show_picked() {
-    const id = state.get().particle;
-    picked.hidden = id === null || !now;
+    const {particle: id, clicked} = state.get();
+    picked.hidden = (id === null && clicked === null) || !now;
     if (picked.hidden) {
       view.set_mark(null);
+      return;
+    }
+    const close = el(
+      'button',
+      {type: 'button', class: 'close', 'aria-label': 'Forget what was clicked', click: () => state.set({particle: null, clicked: null})},
+      '×',
+    );
+    if (id === null) {
+      view.set_mark(null);
+      picked.replaceChildren(close, el('strong', {}, clicked), el('span', {}, ', rigid body'));
       return;
     }
     const {index, frame, places} = now;
     const ids = await frames.ids(index);
     const p = ids.indexOf(id);
-    const close = el(
-      'button',
-      {type: 'button', class: 'close', 'aria-label': 'Forget this particle', click: () => state.set({particle: null})},
-      '×',
-    );
     if (p < 0) {
       view.set_mark(null);
       picked.replaceChildren(close, el('strong', {}, `particle ${whole(id)}`), el('p', {}, 'is not in this frame.'));
@@ -265,11 +272,21 @@ export function start_viewer(run, state, blocks) {
     apply();
   }
 
+  async function load_rigid() {
+    for (const {name, count, low, high, x, y, z, triangles} of run.rigid ?? []) {
+      const middle = low.map((end, d) => (end + high[d]) / 2);
+      const from_middle = (place) => place.map((c, d) => c - middle[d]);
+      const places = await mesh_places({count, low: from_middle(low), high: from_middle(high), x, y, z}, blocks);
+      view.add_rigid(name, middle, places, await blocks.numbers(triangles));
+    }
+  }
+
   function show_lines() {
-    const {mesh, ground} = state.get();
+    const {mesh, ground, rigid} = state.get();
     const of_mesh = {none: [], outline: ['outline'], cells: ['outline', 'cells']}[mesh] ?? ['outline'];
     view.show_lines(ground ? [...of_mesh, 'rigid', 'layers'] : of_mesh);
     view.show_ground(ground);
+    view.show_rigid(rigid);
   }
 
   function restore_eye() {
@@ -303,8 +320,8 @@ export function start_viewer(run, state, blocks) {
     const any = (...names) => names.some((name) => changed.has(name));
     if (any('frame', 'field', 'only') && !playing) load();
     else if (any('map', 'range', 'from', 'to', 'section', 'at', 'normal', 'flip', 'lowest', 'highest', 'size')) apply();
-    if (any('mesh', 'ground')) show_lines();
-    if (any('particle')) show_picked();
+    if (any('mesh', 'ground', 'rigid')) show_lines();
+    if (any('particle', 'clicked')) show_picked();
     if (any('orthographic')) {
       view.eye.set_orthographic(choices.orthographic ?? run.dimension === 2);
       view.draw_soon();
@@ -326,7 +343,12 @@ export function start_viewer(run, state, blocks) {
   load_ground().catch((error) => {
     count_line.textContent = `The ground cannot be shown: ${error.message}`;
   });
-  const ready = load();
+  show_lines();
+  const ready = load_rigid()
+    .catch((error) => {
+      count_line.textContent = `The rigid bodies cannot be shown: ${error.message}`;
+    })
+    .then(load);
   if (!particles) count_line.textContent = run.live ? 'no particles so far, only the mesh' : 'no particles were written, only the mesh';
 
   return {

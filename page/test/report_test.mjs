@@ -9,6 +9,7 @@ import {join} from 'node:path';
 import {launch, missing, open, pixels} from './browser.mjs';
 import {VIEW, bare, coloured, ends, eventually, set, settle, text_of} from './looks.mjs';
 import {test_plane_run} from './plane_run.mjs';
+import {test_plane_rigid, test_solid_rigid} from './rigid_run.mjs';
 import {SAMPLES, fill} from './sample.mjs';
 
 /** Views, section along the line of sight, keys of the canvas, by Tab to everything, phone. */
@@ -290,11 +291,13 @@ try {
   } else {
     const template = readFileSync(name, 'utf8');
     const at = (sample) => join(folder, `${sample}.html`);
-    const samples = Object.fromEntries(['column', 'block', 'valley', 'failed', 'bare'].map((sample) => [sample, SAMPLES[sample]()]));
+    const samples = Object.fromEntries(['column', 'block', 'valley', 'ram', 'tumbler', 'failed', 'bare'].map((sample) => [sample, SAMPLES[sample]()]));
     for (const [sample, {run, texts}] of Object.entries(samples)) writeFileSync(at(sample), fill(template, run, texts));
     const others = async () => {
       await timed('a run in three dimensions', () => test_solid_run(browser, at('block')));
       await timed('ground', () => test_ground(browser, at('valley')));
+      await timed('a rigid body in two dimensions', () => test_plane_rigid(browser, at('ram'), samples.ram));
+      await timed('a rigid body in three dimensions', () => test_solid_rigid(browser, at('tumbler'), samples.tumbler));
       await timed('numbers first', () => test_numbers_first(browser, at('block')));
       await timed('words', () => test_words(browser, at, template));
       await timed('a live page', () => test_live(browser, template));

@@ -1,7 +1,7 @@
-// Reports with made-up runs, written as talus report writes them. Usage: node sample.mjs TEMPLATE OUT [column|block|valley|million|failed|bare]
+// Reports with made-up runs, written as talus report writes them. Usage: node sample.mjs TEMPLATE OUT [column|block|valley|ram|tumbler|million|failed|bare]
 import {readFileSync, writeFileSync} from 'node:fs';
 import {fileURLToPath} from 'node:url';
-import {fill, grown, make_packer, make_random, pack_ground, pack_mesh, pack_particles} from './sample_blocks.mjs';
+import {fill, grown, make_packer, make_random, pack_ground, pack_mesh, pack_particles, pack_rigid_box} from './sample_blocks.mjs';
 
 const SCENE = `# A column of sand falls over its foot.
 title: Collapse of a column
@@ -312,6 +312,20 @@ export function sliding_block(across = 15, frames = 9, on_ground = false) {
   return {run, texts: packer.texts};
 }
 
+/** The column, and a rigid box that moves to the left, rises and turns by 45 degrees. */
+export function column_and_ram() {
+  const {run, texts} = collapsing_column(2000);
+  const move = (share) => ({by: [-2.5 * share, 0.5 * share], turned: (share * Math.PI) / 4});
+  return {run: {...run, rigid: pack_rigid_box(make_packer(texts), run, 'ram', [3.5, 1], [4.3, 1.8], move)}, texts};
+}
+
+/** The block, and a rigid box that flies over it and turns by 45 degrees. */
+export function block_and_tumbler() {
+  const {run, texts} = sliding_block(8, 3);
+  const move = (share) => ({by: [-4 * share, 0, share], turned: (share * Math.PI) / 4});
+  return {run: {...run, rigid: pack_rigid_box(make_packer(texts), run, 'tumbler', [9, 0.5, 3.5], [10, 1.5, 4.5], move)}, texts};
+}
+
 /** A run that failed before it wrote anything but a summary. */
 export function failed_run() {
   const {run} = collapsing_column(10);
@@ -350,6 +364,8 @@ export const SAMPLES = {
   column: collapsing_column,
   block: sliding_block,
   valley: () => sliding_block(8, 3, true),
+  ram: column_and_ram,
+  tumbler: block_and_tumbler,
   million: () => sliding_block(55, 3),
   failed: failed_run,
   bare: bare_run,

@@ -5,9 +5,8 @@ const TYPES = {u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32A
 const STEPS = 65534,
   NOTHING = 65535;
 
-/** Blocks of one report: packs numbers, keeps the text, returns what says where they are. */
-export function make_packer() {
-  const texts = [];
+/** Blocks of one report: packs numbers, keeps the text, returns what says where they are. @param {string[]} texts of blocks before */
+export function make_packer(texts = []) {
   /** @param {ArrayLike<number>} values */
   function pack(values, type, {delta = false, planes = false} = {}) {
     const numbers = TYPES[type].from(values);
@@ -183,4 +182,28 @@ export function pack_ground(packer, height) {
     rigid: packer.pack(triples, 'u32', {delta: true, planes: true}),
     layers: packer.pack(layers, 'u32', {delta: true, planes: true}),
   };
+}
+
+const SQUARE = [0, 1, 2, 1, 3, 2]; // corners 0 to 3, x first
+const CUBE = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5]; // sides face outside
+
+/** A rigid box that has moved and turned about y (2-D: z) in each frame. @param {(share: number) => {by: number[], turned: number}} move */
+export function pack_rigid_box(packer, {particles, dimension}, name, low, high, move) {
+  const flat = dimension === 2;
+  const corners = Array.from({length: flat ? 4 : 8}, (_, k) => low.map((end, axis) => (k & (1 << axis) ? high[axis] : end)));
+  const [x, y, z] = low.map((end, axis) =>
+    packer.positions(
+      corners.map((corner) => corner[axis]),
+      end,
+      high[axis],
+    ),
+  );
+  particles.frames.forEach((frame, f) => {
+    const {by, turned} = move(f / (particles.frames.length - 1));
+    const [sine, cosine] = [Math.sin(turned / 2), Math.cos(turned / 2)];
+    frame.rigid = packer.pack(flat ? [...by, 0, 0, 0, sine, cosine] : [...by, 0, sine, 0, cosine], 'f32', {planes: true});
+  });
+  const ends = (place) => [...place, 0].slice(0, 3);
+  const triangles = packer.pack(flat ? SQUARE : CUBE, 'u32', {delta: true, planes: true});
+  return [{name, count: corners.length, low: ends(low), high: ends(high), x, y, z: z ?? null, triangles}];
 }

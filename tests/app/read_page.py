@@ -80,6 +80,14 @@ def told(page):
                          f"{min(heights):.6g} to {max(heights):.6g} m")
     else:
         yield "ground", None
+    for b, body in enumerate(run.get("rigid", [])):
+        corners = page.block(body["triangles"])
+        assert max(corners) < body["count"]
+        ends = ", ".join(f"{min(axis):.6g} to {max(axis):.6g}" for axis in page.places(body)[:run["dimension"]])
+        yield f"rigid.{body['name']}", f"{body['count']} nodes, {len(corners) // 3} triangles, {ends} m"
+        for frame in particles["frames"] if particles else []:
+            numbers = page.block(frame["rigid"])[7 * b:7 * b + 7] if frame["rigid"] else ["none"]
+            yield f"rigid.{body['name']} at {frame['time']:.6g} s", " ".join(map(str, numbers))
     for name in ("history", "run_out"):
         if table := run[name]:
             values, rows = page.block(table["values"]), table["rows"]

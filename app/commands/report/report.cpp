@@ -271,12 +271,16 @@ std::string page_of(const RunFolder& run, const PageOptions& wishes, const fs::p
   if (mesh)
     add_mesh(*mesh, page);
   add_ground(run.path, page);
+  RigidFrames rigid(run.path, run.scene.rigid, page);
 
   const Real room = bytes_of_megabyte * wishes.megabytes - static_cast<Real>(text.size() + to_json(page).size() + page.block_bytes());
   if (room < 0)
     throw Error(fmt::format("--size: too small: the page without particles takes {:.3g} MB", wishes.megabytes - room / bytes_of_megabyte));
-  add_particles(survey, {page.dimension, bodies, picture_range(outputs.picture, survey), wishes.frames, !wishes.fields.empty(), room},
-                page);
+  add_particles(
+      survey,
+      {page.dimension, bodies, picture_range(outputs.picture, survey), wishes.frames, !wishes.fields.empty(), room, std::move(rigid)},
+      page);
+  note_frames_without_rigid(page);
   notes = page.notes;
   return filled(text, template_file, page);
 }

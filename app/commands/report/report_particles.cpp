@@ -78,7 +78,12 @@ std::vector<std::uint8_t> growth_of(std::span<const Real> places, Real radius, s
 class FrameWriter {
  public:
   FrameWriter(const RunSurvey& survey, const ParticleWishes& wishes, const PagePlan& plan, Page& page)
-      : survey_(survey), plan_(plan), dimension_(static_cast<std::size_t>(wishes.dimension)), bodies_(wishes.bodies.size()), page_(page)
+      : survey_(survey),
+        plan_(plan),
+        dimension_(static_cast<std::size_t>(wishes.dimension)),
+        bodies_(wishes.bodies.size()),
+        rigid_(wishes.rigid),
+        page_(page)
   {
     for (std::size_t f = 0; f < plan.fields; ++f)
       ranges_.push_back(range_over_frames(survey, f));
@@ -108,12 +113,14 @@ class FrameWriter {
                     add_ids(shown.ids),
                     add_body(shown.body),
                     add_growth(shown),
+                    {},
                     {}};
     for (std::size_t d = 0; d < dimension_; ++d)
       frame.x.axes.push_back(page_.add(std::move(blocks[d])));
     for (std::size_t f = 0; f < plan_.fields; ++f)
       frame.fields.push_back(shown.fields[f].empty() && !shown.ids.empty() ? std::nullopt
                                                                            : std::optional(page_.add(std::move(blocks[dimension_ + f]))));
+    frame.rigid = rigid_.add(known.time, page_);
     return frame;
   }
   Real radius() const noexcept { return radius_; }
@@ -147,6 +154,7 @@ class FrameWriter {
   const RunSurvey& survey_;
   const PagePlan& plan_;
   std::size_t dimension_, bodies_;
+  const RigidFrames& rigid_;
   Page& page_;
   std::vector<ValueRange> ranges_;
   std::optional<std::vector<std::int64_t>> last_ids_;
@@ -169,7 +177,8 @@ ParticleCost measure(const RunSurvey& survey, const ParticleWishes& wishes, cons
   PagePlan all_fields = plan;
   all_fields.fields = survey.fields.size();
   constexpr Real of_block = 200, of_frame = 300;  // bytes of descriptions
-  const auto blocks = static_cast<Real>(survey.fields.size()) + wishes.dimension + (wishes.dimension == 2 ? 1 : 0);
+  const auto blocks =
+      static_cast<Real>(survey.fields.size()) + wishes.dimension + (wishes.dimension == 2 ? 1 : 0) + (wishes.rigid.any() ? 1 : 0);
   ParticleCost cost{0, 0, std::vector<Real>(survey.fields.size()), of_frame + of_block * blocks};
   const auto frames = evenly_spread(std::min<std::size_t>(3, plan.frames.size()), plan.frames.size());
   for (const std::size_t f : frames) {
@@ -182,6 +191,7 @@ ParticleCost measure(const RunSurvey& survey, const ParticleWishes& wishes, cons
     for (const BlockId axis : frame.x.axes)
       cost.place += share * bytes(axis);
     cost.place += frame.growth ? share * bytes(*frame.growth) : 0;
+    cost.frame += frame.rigid ? share * static_cast<Real>(scratch.blocks[*frame.rigid].base64.size()) : 0;
     for (std::size_t k = 0; k < frame.fields.size(); ++k)
       cost.fields[k] += frame.fields[k] ? share * bytes(*frame.fields[k]) : 0;
   }

@@ -66,7 +66,9 @@ std::string WatchPages::stamp()
 {
   if (const auto now = Watch::now(); outputs_.empty() || now - stamped_at_ >= rest_) {
     stamped_at_ = now;
-    outputs_ = state_of(folder_ / "particles.pvd") + ' ' + state_of(folder_ / "history.csv");
+    outputs_.clear();
+    for (const char* file : {"particles.pvd", "rigid.pvd", "history.csv"})
+      outputs_ += state_of(folder_ / file) + ' ';
   }
   stamp_ = state_of(folder_ / "summary.json") + ' ' + outputs_;  // the end of the run is reported at once
   return stamp_;

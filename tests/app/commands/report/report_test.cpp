@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "app/commands/report/report.hpp"
@@ -233,6 +234,68 @@ TEST_F(Report, DiscsAreLargerBesideGapsThatOpenWhileTheRunGoesOn)
   ASSERT_EQ(std::sscanf(page.c_str() + at, "growth = [%d, %d]", &first, &last), 2) << page.substr(at, 100);
   EXPECT_GE(last, 20) << "hundredths: the sheet is about twice as long as at the start";
   EXPECT_LT(first, last);
+}
+
+/// Translation and quaternion of a rigid body in a frame of a page.
+std::vector<Real> motion_in(const std::string& told, const std::string& body, const std::string& time)
+{
+  const std::string key = "rigid." + body + " at " + time + " s = ";
+  const auto at = told.find(key);
+  EXPECT_NE(at, std::string::npos) << key << " in\n" << told;
+  if (at == std::string::npos)
+    return {};
+  std::istringstream numbers(told.substr(at + key.size(), told.find('\n', at) - at - key.size()));
+  return {std::istream_iterator<Real>(numbers), {}};
+}
+
+/// Matches translation and quaternion.
+auto moved_by(std::vector<Real> motion) { return testing::Pointwise(testing::DoubleNear(1e-5), std::move(motion)); }
+
+TEST_F(Report, RigidBodiesOfThePageMoveAndTurnAsInTheRun)
+{
+  write("flat.yaml", block_scene(R"yaml(rigid:
+  - {name: wheel, motion: given, velocity: [0.5, -1], angular_velocity: [10], shape: {type: sphere, centre: [0.3, 1.7], radius: 0.2}}
+  - {name: ram, motion: given, angular_velocity: [-20], shape: {type: box, low: [1.4, 1.4], high: [1.8, 1.6]}}
+time: {end: 0.1}
+outputs: {particles: {every: 0.05, fields: [velocity]}}
+)yaml"));
+  ASSERT_EQ(talus("run flat.yaml --quiet --out flat").code, 0);
+  ASSERT_EQ(report("flat").code, 0);
+  const std::string flat = told("flat/report.html'");
+  EXPECT_THAT(flat, HasSubstr("rigid.wheel = 49 nodes, 48 triangles, 0.1 to 0.5, 1.5 to 1.9 m\n"));
+  EXPECT_THAT(flat, HasSubstr("rigid.ram = 4 nodes, 2 triangles, 1.4 to 1.8, 1.4 to 1.6 m\n"));
+  EXPECT_THAT(motion_in(flat, "wheel", "0"), moved_by({0, 0, 0, 0, 0, 0, 1}));
+  EXPECT_THAT(motion_in(flat, "wheel", "0.1"), moved_by({0.05, -0.1, 0, 0, 0, std::sin(0.5), std::cos(0.5)}));
+  EXPECT_THAT(motion_in(flat, "ram", "0.1"), moved_by({0, 0, 0, 0, 0, -std::sin(1.0), std::cos(1.0)})) << "more than a right angle";
+}
+
+TEST_F(Report, RigidSurfacesAreOnceInThePageAndLeftOutWhereTheyCannotBeRead)
+{
+  write("solid.yaml", R"yaml(title: Brick
+dimension: 3
+mesh: {grid: {low: [0, 0, 0], high: [2, 2, 2], cells: [2, 2, 2]}}
+materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]
+bodies: [{name: block, material: rubber, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, particles_per_cell: 4}]
+rigid: [{name: brick, motion: given, velocity: [0, 1, 0], angular_velocity: [6, 0, 8], shape: {type: box, low: [1.4, 0.4, 1.4], high: [1.6, 0.6, 1.6]}}]
+time: {end: 0.1}
+outputs: {particles: {every: 0.05, fields: [velocity]}}
+)yaml");
+  ASSERT_EQ(talus("run solid.yaml --quiet --out solid").code, 0);
+  ASSERT_EQ(report("solid").code, 0);
+  const std::string solid = told("solid/report.html'");
+  EXPECT_THAT(solid, HasSubstr("rigid.brick = 8 nodes, 12 triangles, 1.4 to 1.6, 0.4 to 0.6, 1.4 to 1.6 m\n"));
+  EXPECT_THAT(motion_in(solid, "brick", "0.1"), moved_by({0, 0.1, 0, 0.6 * std::sin(0.5), 0, 0.8 * std::sin(0.5), std::cos(0.5)}));
+
+  std::filesystem::resize_file(folder_ / "solid/rigid_0001.vtu", 300);
+  const Outcome one_less = report("solid");
+  ASSERT_EQ(one_less.code, 0) << one_less.err;
+  EXPECT_THAT(one_less.out, HasSubstr("rigid bodies: their files of 1 of 3 times are missing or damaged"));
+  EXPECT_THAT(told("solid/report.html'"), ContainsRegex("rigid.brick at 0.0[0-9]+ s = none\n"));
+  std::filesystem::resize_file(folder_ / "solid/rigid_0000.vtu", 300);
+  const Outcome none = report("solid");
+  ASSERT_EQ(none.code, 0) << none.err;
+  EXPECT_THAT(none.out, ContainsRegex("rigid bodies are not shown: .*solid/rigid_0000.vtu"));
+  EXPECT_THAT(read("solid/report.html"), Not(HasSubstr("\"rigid\""))) << "as of a run without rigid bodies";
 }
 
 TEST_F(Report, ASmallPageHasFewerFramesOrASampleAndSaysSo)
