@@ -8,8 +8,9 @@ namespace talus {
 
 namespace {
 
-/// Where one body has a corner and the other is flat, its filling changes less, and the flat one says which way the surface faces.
-constexpr int power_of_steepness = 6;
+/// Where one body has a corner and the other is flat, its filling changes less, and the flat one says which way the surface faces.  With 6 the
+/// front edge of a sliding block still ploughs: it slides 4 to 9 % too short a way at twice the limit of friction, with 60 to 0.3 %.
+constexpr int power_of_steepness = 60;
 /// Share of a neighbour in the surface at a node, relative to the node itself: impulses act on all nodes that rows of operators reach.
 constexpr Real weight_of_neighbour = 0.5;
 /// A filling that changes by less than this over the size of a node says nothing about the direction of a surface.
@@ -219,7 +220,8 @@ void ContactNodes<D>::find_normals_of(const Mesh<D>& mesh, std::size_t l)
     if (!(sum.weight > 0))
       continue;
     const Vec<D> first = sum.first / sum.weight, second = sum.second / sum.weight;
-    const Real of_first = std::pow(first.norm(), power_of_steepness), of_second = std::pow(second.norm(), power_of_steepness);
+    const Real larger = std::max({first.norm(), second.norm(), std::numeric_limits<Real>::min()});
+    const Real of_first = std::pow(first.norm() / larger, power_of_steepness), of_second = std::pow(second.norm() / larger, power_of_steepness);
     const Vec<D> mean = (of_second * second - of_first * first) / std::max(of_first + of_second, std::numeric_limits<Real>::min());
     const Real size = mean.norm();
     if (size * mesh.node_size(at.node) > least_change)
