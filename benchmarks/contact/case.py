@@ -1,4 +1,4 @@
-"""Bodies with velocity fields of their own: a disk that rolls or slides down an inclined body, and two disks that collide."""
+"""Bodies with velocity fields of their own: a disk or sphere that rolls or slides down an inclined body, and two disks that collide."""
 import numpy as np
 
 import lab as tools
@@ -23,7 +23,7 @@ def run_down(lab, case, friction_key, name, size, place, data):
     friction, degrees = INCLINES[name]
     angle, gravity = np.radians(degrees), data["gravity [m/s^2]"]
     settings = {friction_key: friction, "loads[0].acceleration": [float(gravity * np.sin(angle)), float(-gravity * np.cos(angle))],
-                "mesh.size": size, "mesh.regions[0].shape.low": [place, -0.5]}
+                "mesh.size": size, **{f"mesh.regions[{i}].shape.low": [place, bottom] for i, bottom in enumerate(data["bottoms of regions [m]"])}}
     return lab.run(f"{case}/scene.yaml", tools.label(f"{name}_{size}_{-place}"), settings)
 
 
@@ -31,6 +31,12 @@ def runs_down(lab, case, friction_key, data):
     """Starts the runs of this level, by incline, size of cells and place of the mesh."""
     return {(name, size, place): run_down(lab, case, friction_key, name, size, place, data) for name in INCLINES for size in SIZES for place in PLACES
             if lab.level == "full" or {SIZES[size], PLACES[place]} == {"quick"}}
+
+
+def runs_down_of_kernel(lab, case, friction_key, data):
+    """The same with another kernel: on all places with the coarse cells, on the first with the middle ones."""
+    return {(name, size, place): run_down(lab, case, friction_key, name, size, place, data) for name in INCLINES for size, place in
+            [(0.1, place) for place in PLACES] + [(0.05, 0.0)]}
 
 
 def way(run, data):
@@ -46,6 +52,11 @@ def judge_incline(name, size, place, run, data):
     return tools.Result(CASE, f"way, {name}, cells of {size} m{where}", "m", float(way(run, data)[-1]), "within", data["slack"][str(size)], float(exact), data["source"], run)
 
 
+def start_disks(lab):
+    """Starts the runs of two disks of this level, by size of cells."""
+    return {size: lab.run(f"{CASE}/scene_disks.yaml", f"disks_{size}", {"mesh.size": size}) for size, level in DISKS.items() if lab.level in ("full", level)}
+
+
 def judge_disks(size, run, data):
     """When the disks touch, and the speed at which their centres part over that at which they met."""
     history = run.history
@@ -57,6 +68,20 @@ def judge_disks(size, run, data):
     return [tools.Result(CASE, f"disks touch, cells of {size} m", "s", first, *criterion, data["contact [s]"], data["contact source"], run),
             tools.Result(CASE, f"restitution of the centres, cells of {size} m", "-", float(-speed[-1] / speed[0]), *rebound, data["restitution"],
                          data["disk source"], run)]
+
+
+def judge_sphere(run, data):
+    """The way of a sphere at the end, relative to that of a rigid one."""
+    exact = acceleration(*INCLINES["rolls, friction 0.3, 30 degrees"], data["gravity [m/s^2]"], 1.4) * run.history["time"][-1] ** 2 / 2
+    return tools.Result(CASE, "way of a sphere, rolls, friction 0.3, 30 degrees, cells of 0.1 m", "m", float(way(run, data)[-1]), "reported", None, float(exact),
+                        data["sphere source"], run)
+
+
+def of_kernel(lab, data):
+    """Starts disks with another kernel, each with what measures it."""
+    down = runs_down_of_kernel(lab, CASE, "contacts[0].friction", data)
+    pairs = [(run, lambda key=key, run=run: [judge_incline(*key, run, data)]) for key, run in down.items()]
+    return pairs + [(run, lambda size=size, run=run: judge_disks(size, run, data)) for size, run in start_disks(lab).items()]
 
 
 def draw(figure, runs, way_of, data):
@@ -77,9 +102,12 @@ def evaluate(lab):
     """Results of disks on planes and of colliding disks."""
     data = tools.reference(CASE)
     runs = runs_down(lab, CASE, "contacts[0].friction", data)
-    disks = {size: lab.run(f"{CASE}/scene_disks.yaml", f"disks_{size}", {"mesh.size": size}) for size, level in DISKS.items() if lab.level == "full" or level == "quick"}
+    disks = start_disks(lab)
+    spheres = [lab.run(f"{CASE}/scene_sphere.yaml", "sphere", {})] if lab.level == "full" else []
     results = [judge_incline(name, size, place, run, data) for (name, size, place), run in runs.items()]
     for size, run in disks.items():
         results += judge_disks(size, run, data)
+    results += [judge_sphere(run, data) for run in spheres]
+    results += tools.with_other_kernels(lab, lambda other: of_kernel(other, data))
     lab.figure(CASE, "verification_contact", lambda figure: draw(figure, runs, way, data), caption="Way of a disk down an inclined body.")
     return results
