@@ -37,7 +37,7 @@ METHODS = {  # for sweeps, the default first; linear with tpic inverts particles
     for kernel, scheme in (("projected", "aflip"), ("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))}
 METHODS["umls, exact_force, aflip"] = {"kernel": "umls", "umls.gradient": "exact_force", "transfer.scheme": "aflip"}
 SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> suitable transfer
-OTHER_KERNELS = ("umls", "linear")  # beside the default
+OTHER_KERNELS = {"umls": "aflip", "linear": "flip"}  # beside the default, with their transfer: linear with aflip inverts particles where bodies meet
 OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme"}  # option of the command line -> key of the scene
 
 
@@ -291,7 +291,7 @@ class Lab:
 
 
 class OtherKernel:
-    """A lab at the quick level whose runs have another kernel, and the transfer of the scene; they may fail."""
+    """A lab at the quick level whose runs have another kernel with its transfer; they may fail."""
 
     level = "quick"
 
@@ -299,7 +299,7 @@ class OtherKernel:
         self._lab, self._kernel = lab, kernel
 
     def run(self, scene, label, settings):
-        return self._lab.run(scene, f"{label}_{self._kernel}", {**settings, "kernel": self._kernel}, may_fail=True)
+        return self._lab.run(scene, f"{label}_{self._kernel}", {**settings, "kernel": self._kernel, "transfer.scheme": OTHER_KERNELS[self._kernel]}, may_fail=True)
 
 
 def with_other_kernels(lab, start):

@@ -7,6 +7,9 @@ CASE = "contact"
 INCLINES = {"rolls, friction 0.3, 30 degrees": (0.3, 30), "slides, friction 0.1, 30 degrees": (0.1, 30), "slides, friction 0.3, 60 degrees": (0.3, 60)}
 SIZES = {0.1: "quick", 0.05: "quick", 0.025: "full"}  # 5, 10 and 20 cells over the radius
 PLACES = {0.0: "quick", -0.03: "full", -0.06: "full"}  # m, left end of the room: gmsh then makes other meshes
+SPHERES = (0.1, 0.07)  # m, at full level: 5 and 7 cells over the radius
+MODULI = {"plane as soft as the disk": (1e6, 1e6), "both ten times as stiff": (1e7, 1e8)}  # Pa, at full level: of disk and plane
+ROLLS = "rolls, friction 0.3, 30 degrees"
 DISKS = {0.05: "quick", 0.025: "quick", 0.0125: "full"}
 
 
@@ -18,13 +21,13 @@ def acceleration(friction, degrees, gravity, turning=1.5):
     return gravity * (np.sin(angle) - friction * np.cos(angle))
 
 
-def run_down(lab, case, friction_key, name, size, place, data):
-    """Starts a run of the scene of a case down a plane."""
+def run_down(lab, case, friction_key, name, size, place, data, more=None, word=""):
+    """Starts a run of the scene of a case down a plane, with `more` settings under a label that ends with `word`."""
     friction, degrees = INCLINES[name]
     angle, gravity = np.radians(degrees), data["gravity [m/s^2]"]
     settings = {friction_key: friction, "loads[0].acceleration": [float(gravity * np.sin(angle)), float(-gravity * np.cos(angle))],
                 "mesh.size": size, **{f"mesh.regions[{i}].shape.low": [place, bottom] for i, bottom in enumerate(data["bottoms of regions [m]"])}}
-    return lab.run(f"{case}/scene.yaml", tools.label(f"{name}_{size}_{-place}"), settings)
+    return lab.run(f"{case}/scene.yaml", tools.label(f"{name}_{size}_{-place}{word}"), {**settings, **(more or {})})
 
 
 def runs_down(lab, case, friction_key, data):
@@ -70,11 +73,32 @@ def judge_disks(size, run, data):
                          data["disk source"], run)]
 
 
-def judge_sphere(run, data):
-    """The way of a sphere at the end, relative to that of a rigid one."""
-    exact = acceleration(*INCLINES["rolls, friction 0.3, 30 degrees"], data["gravity [m/s^2]"], 1.4) * run.history["time"][-1] ** 2 / 2
-    return tools.Result(CASE, "way of a sphere, rolls, friction 0.3, 30 degrees, cells of 0.1 m", "m", float(way(run, data)[-1]), "reported", None, float(exact),
-                        data["sphere source"], run)
+def spheres_down(lab):
+    """Starts spheres at full level, by size of cells."""
+    return {size: lab.run(f"{CASE}/scene_sphere.yaml", f"sphere_{size}", {"mesh.size": size}) for size in SPHERES if lab.level == "full"}
+
+
+def judge_sphere(size, run, data):
+    """The way of a sphere at the end, and the mean friction over the mean pressure, each beside that of a rigid one."""
+    history, (friction, degrees) = run.history, INCLINES[ROLLS]
+    exact = acceleration(friction, degrees, data["gravity [m/s^2]"], 1.4) * history["time"][-1] ** 2 / 2
+    used = abs(history["contact_plane_ball_x"].mean() / history["contact_plane_ball_z"].mean())
+    return [tools.Result(CASE, f"way of a sphere, {ROLLS}, cells of {size} m", "m", float(way(run, data)[-1]), "reported", None, float(exact), data["sphere source"], run),
+            tools.Result(CASE, f"shear over pressure below a sphere that rolls, cells of {size} m", "-", float(used), "reported", None,
+                         float(np.tan(np.radians(degrees)) * 0.4 / 1.4), data["sphere source"], run)]
+
+
+def moduli_down(lab, data):
+    """Starts disks of other stiffness at full level, by name and size of cells."""
+    return {(name, size): run_down(lab, CASE, "contacts[0].friction", ROLLS, size, 0.0, data,
+                                   {"materials[0].youngs_modulus": disk, "materials[1].youngs_modulus": plane}, f"_{name}")
+            for name, (disk, plane) in MODULI.items() for size in (0.1, 0.05) if lab.level == "full"}
+
+
+def judge_modulus(name, size, run, data):
+    """The way of a disk of other stiffness."""
+    exact = acceleration(*INCLINES[ROLLS], data["gravity [m/s^2]"]) * run.history["time"][-1] ** 2 / 2
+    return tools.Result(CASE, f"way, {ROLLS}, {name}, cells of {size} m", "m", float(way(run, data)[-1]), "reported", None, float(exact), data["source"], run)
 
 
 def of_kernel(lab, data):
@@ -103,11 +127,12 @@ def evaluate(lab):
     data = tools.reference(CASE)
     runs = runs_down(lab, CASE, "contacts[0].friction", data)
     disks = start_disks(lab)
-    spheres = [lab.run(f"{CASE}/scene_sphere.yaml", "sphere", {})] if lab.level == "full" else []
+    spheres, moduli = spheres_down(lab), moduli_down(lab, data)
     results = [judge_incline(name, size, place, run, data) for (name, size, place), run in runs.items()]
     for size, run in disks.items():
         results += judge_disks(size, run, data)
-    results += [judge_sphere(run, data) for run in spheres]
+    results += [result for size, run in spheres.items() for result in judge_sphere(size, run, data)]
+    results += [judge_modulus(*key, run, data) for key, run in moduli.items()]
     results += tools.with_other_kernels(lab, lambda other: of_kernel(other, data))
     lab.figure(CASE, "verification_contact", lambda figure: draw(figure, runs, way, data), caption="Way of a disk down an inclined body.")
     return results
