@@ -37,6 +37,7 @@ METHODS = {  # for sweeps, the default first; linear with tpic inverts particles
     for kernel, scheme in (("projected", "aflip"), ("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))}
 METHODS["umls, exact_force, aflip"] = {"kernel": "umls", "umls.gradient": "exact_force", "transfer.scheme": "aflip"}
 SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> suitable transfer
+OTHER_KERNELS = {"umls": "aflip", "linear": "flip"}  # beside the default, with their transfer: linear with aflip inverts particles where bodies meet
 OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme"}  # option of the command line -> key of the scene
 
 
@@ -287,6 +288,30 @@ class Lab:
         self.orders.append({"case": case, "name": name, "sizes": [plain(size) for size in sizes], "errors": [plain(error) for error in errors],
                             "orders": [plain(order) for order in neighbours(sizes, errors)], "order": plain(observed_order(sizes, errors)),
                             "expected": expected})
+
+
+class OtherKernel:
+    """A lab at the quick level whose runs have another kernel with its transfer; they may fail."""
+
+    level = "quick"
+
+    def __init__(self, lab, kernel):
+        self._lab, self._kernel = lab, kernel
+
+    def run(self, scene, label, settings):
+        return self._lab.run(scene, f"{label}_{self._kernel}", {**settings, "kernel": self._kernel, "transfer.scheme": OTHER_KERNELS[self._kernel]}, may_fail=True)
+
+
+def with_other_kernels(lab, start):
+    """At the full level, reported results with the other kernels: start(lab) starts runs and returns pairs of a run and a function that measures it."""
+    pairs = [(kernel, *pair) for kernel in OTHER_KERNELS for pair in start(OtherKernel(lab, kernel))] if lab.level == "full" else []
+    results = []
+    for kernel, run, measure in pairs:
+        if run.ending[0]:
+            results.append(Result(run.case, f"time at which the run failed, {run.label}", "s", float(run.history["time"][-1]), "reported", None, None, "", run))
+        else:
+            results += [dataclasses.replace(result, metric=f"{result.metric}, {kernel}", criterion="reported", tolerance=None) for result in measure()]
+    return results
 
 
 def overridden(settings, overrides):

@@ -34,6 +34,7 @@ CASES = [
     "patch_test",
     "loaded_surface",
     "rigid_bodies",
+    "floating_block",
     "rigid_motion",
     "sliding_block",
     "wall_gap",

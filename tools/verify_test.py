@@ -111,6 +111,17 @@ class Runs(unittest.TestCase):
         self.assertNotIn("linear", words)
         self.assertNotIn("apic", words)
 
+    def test_other_kernels_have_runs_of_their_own_at_the_full_level_and_reported_results_that_name_them(self):
+        def start(other):
+            run = other.run(self.SCENE, "n", {"a": 1})
+            return [(run, lambda: [lab.Result("sliding_block", "way", "m", 1.0, "within", 0.1, 2.0, "source", run)])]
+
+        self.assertEqual(lab.with_other_kernels(self.lab(), start), [])
+        results = lab.with_other_kernels(self.lab(level="full"), start)
+        self.assertEqual([(r.metric, r.criterion, r.passed) for r in results], [("way, umls", "reported", None), ("way, linear", "reported", None)])
+        words = (results[1].run.folder / "words").read_text(encoding="utf-8")
+        self.assertIn("--set kernel=linear --set transfer.scheme=flip", words)
+
     def measured(self, evaluate):
         """Records and account of a case whose evaluate() is given."""
         known, lab.module = lab.module, lambda case: type("Case", (), {"evaluate": staticmethod(evaluate)})

@@ -87,17 +87,40 @@ def draw_spheres(figure, runs, data):
     axis.legend()
 
 
+def start_blocks(lab, data):
+    """Starts the blocks of this level, by name of the slope and size of cells."""
+    return {(name, size): block(lab, slope, size, data) for name, slope in SLOPES.items() for size in at_level(lab, BLOCKS)}
+
+
+def start_beams(lab):
+    """Starts tied and loose beams of this level, by size of cells."""
+    return {size: [lab.run(f"{CASE}/scene_beams.yaml", f"{name}_{size}", {"mesh.size": size, **tie}) for name, tie in (("tied", {"contacts[0].tied": True}), ("loose", {}))]
+            for size in at_level(lab, BEAMS)}
+
+
+def start_spheres(lab):
+    """Starts the spheres of this level, by size of cells."""
+    return {size: lab.run(f"{CASE}/scene_spheres.yaml", f"spheres_{size}", {"mesh.refine[0].size": size, "mesh.refine[1].size": min(0.3, 2 * size)})
+            for size in at_level(lab, SPHERES)}
+
+
+def of_kernel(lab, data):
+    """Starts blocks, beams and spheres with another kernel, each with what measures it."""
+    blocks, beams, spheres = start_blocks(lab, data), start_beams(lab), start_spheres(lab)
+    pairs = [(run, lambda name=name, size=size, run=run: [judge_block(name, size, run, data)]) for (name, size), run in blocks.items()]
+    pairs += [(loose if tied.ending[0] == 0 else tied, lambda size=size, tied=tied, loose=loose: [judge_beams(size, tied, loose, data)])
+              for size, (tied, loose) in beams.items()]
+    return pairs + [(run, lambda size=size, run=run: judge_spheres(size, run, data, False)) for size, run in spheres.items()]
+
+
 def evaluate(lab):
     """Results of blocks, beams and spheres."""
     data = tools.reference(CASE)
-    blocks = {(name, size): block(lab, slope, size, data) for name, slope in SLOPES.items() for size in at_level(lab, BLOCKS)}
-    beams = {size: [lab.run(f"{CASE}/scene_beams.yaml", f"{name}_{size}", {"mesh.size": size, **tie}) for name, tie in (("tied", {"contacts[0].tied": True}), ("loose", {}))]
-             for size in at_level(lab, BEAMS)}
-    spheres = {size: lab.run(f"{CASE}/scene_spheres.yaml", f"spheres_{size}", {"mesh.refine[0].size": size, "mesh.refine[1].size": min(0.3, 2 * size)})
-               for size in at_level(lab, SPHERES)}
+    blocks, beams, spheres = start_blocks(lab, data), start_beams(lab), start_spheres(lab)
     results = [judge_block(name, size, run, data) for (name, size), run in blocks.items()]
     results += [judge_beams(size, *pair, data) for size, pair in beams.items()]
     for size, run in spheres.items():
         results += judge_spheres(size, run, data, lab.level == "full" and size == min(SPHERES))
+    results += tools.with_other_kernels(lab, lambda other: of_kernel(other, data))
     lab.figure(CASE, "verification_contact_spheres", lambda figure: draw_spheres(figure, spheres, data), caption="Force between two spheres that collide.")
     return results

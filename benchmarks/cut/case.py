@@ -63,16 +63,30 @@ def draw(figure, runs, data):
     axis.legend(fontsize=6)
 
 
+def start(lab):
+    """Starts the runs of this level: blocks that are let go, blocks under growing shear and sheets, each by size of cells."""
+    wanted = [size for size, level in SIZES.items() if lab.level in ("full", level)]
+    return ({size: lab.run(f"{CASE}/scene.yaml", f"slides_{size}", {"mesh.size": size}) for size in wanted},
+            {size: lab.run(f"{CASE}/scene_ramp.yaml", f"ramp_{size}", {"mesh.size": size}) for size in wanted},
+            {size: lab.run(f"{CASE}/scene_sheet.yaml", f"sheet_{size}", {"mesh.size": size}) for size, level in SHEETS.items() if lab.level in ("full", level)})
+
+
+def of_kernel(lab, data):
+    """Starts them with another kernel, each with what measures it."""
+    slides, ramps, sheets = start(lab)
+    pairs = [(run, lambda size=size, run=run: [judge_way(size, run, data)]) for size, run in slides.items()]
+    pairs += [(run, lambda size=size, run=run: judge_ramp(size, run, data)) for size, run in ramps.items()]
+    return pairs + [(run, lambda size=size, run=run: [judge_sheet(size, run, data)]) for size, run in sheets.items()]
+
+
 def evaluate(lab):
     """Results of blocks on cuts and of a sheet in soil."""
     data = tools.reference(CASE)
-    wanted = [size for size, level in SIZES.items() if lab.level in ("full", level)]
-    slides = {size: lab.run(f"{CASE}/scene.yaml", f"slides_{size}", {"mesh.size": size}) for size in wanted}
-    ramps = {size: lab.run(f"{CASE}/scene_ramp.yaml", f"ramp_{size}", {"mesh.size": size}) for size in wanted}
-    sheets = {size: lab.run(f"{CASE}/scene_sheet.yaml", f"sheet_{size}", {"mesh.size": size}) for size, level in SHEETS.items() if lab.level in ("full", level)}
+    slides, ramps, sheets = start(lab)
     results = [judge_way(size, run, data) for size, run in slides.items()]
     for size, run in ramps.items():
         results += judge_ramp(size, run, data)
     results += [judge_sheet(size, run, data) for size, run in sheets.items()]
+    results += tools.with_other_kernels(lab, lambda other: of_kernel(other, data))
     lab.figure(CASE, "verification_cut", lambda figure: draw(figure, slides, data), caption="Way of a block down an inclined cut.")
     return results
