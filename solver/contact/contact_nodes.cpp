@@ -221,7 +221,8 @@ void ContactNodes<D>::find_normals_of(const Mesh<D>& mesh, std::size_t l)
       continue;
     const Vec<D> first = sum.first / sum.weight, second = sum.second / sum.weight;
     const Real larger = std::max({first.norm(), second.norm(), std::numeric_limits<Real>::min()});
-    const Real of_first = std::pow(first.norm() / larger, power_of_steepness), of_second = std::pow(second.norm() / larger, power_of_steepness);
+    const Real of_first = std::pow(first.norm() / larger, power_of_steepness),
+               of_second = std::pow(second.norm() / larger, power_of_steepness);
     const Vec<D> mean = (of_second * second - of_first * first) / std::max(of_first + of_second, std::numeric_limits<Real>::min());
     const Real size = mean.norm();
     if (size * mesh.node_size(at.node) > least_change)

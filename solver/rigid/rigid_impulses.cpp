@@ -154,7 +154,7 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
     };
 
     const Twist<D> before = twist<D>(state.v, state.spin);
-    Twist<D> q = before;
+    Twist<D> q = before, after = before;
     if (body.is_free()) {
       const TwistSlope<D> inertia = inertia_of(body, state), per_inertia = inertia.inverse();
       Twist<D> reaction = Twist<D>::Zero();
@@ -191,7 +191,7 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
             break;
         }
       }
-      const Twist<D> after = before - per_inertia * reaction;  // momentum is exact wherever the method has ended
+      after = before - per_inertia * reaction;  // momentum is exact wherever the method has ended
       state.v = after.template head<D>(), state.spin = angular_part<D>(after);
     }
     for (std::size_t k = 0; k < touching.size(); ++k) {
@@ -200,6 +200,7 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
       if (by.pressed.isZero(0))
         continue;
       at.pressed = by.pressed, at.rubbed = by.rubbed, at.sticks = by.sticks;
+      at.u = at_arm<D>(at.touch.place - state.x) * (0.5 * (before + after));
       Nodes<D>& nodes = fields[static_cast<std::size_t>(at.field)].nodes;
       const auto n = static_cast<std::size_t>(at.node);
       const Vec<D> change = (by.pressed + by.rubbed) / nodes.sum[n].mass;
@@ -237,9 +238,9 @@ void RigidNodes<D>::add_sums(const Mesh<D>& mesh, std::span<const RigidState<D>>
       continue;
     const RigidState<D>& state = states[static_cast<std::size_t>(at.rigid)];
     const NodeMotion<D>& motion = fields[static_cast<std::size_t>(at.field)].nodes.motion[static_cast<std::size_t>(at.node)];
-    const Vec<D> u = state.velocity_at(at.touch.place), relative = motion.v - 0.5 * motion.change - u, impulse = at.pressed + at.rubbed;
+    const Vec<D> relative = motion.v - 0.5 * motion.change - at.u, impulse = at.pressed + at.rubbed;
     sums[static_cast<std::size_t>(at.rigid)].add({impulse, moment<D>(mesh.node(at.node), impulse),
-                                                  moment<D>(at.touch.place - state.x, impulse), impulse.dot(u), at.pressed.dot(relative),
+                                                  moment<D>(at.touch.place - state.x, impulse), impulse.dot(at.u), at.pressed.dot(relative),
                                                   at.rubbed.dot(relative)});
   }
 }

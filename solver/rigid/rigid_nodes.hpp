@@ -39,6 +39,7 @@ struct RigidNode {
   bool sticks = false;              ///< whether the material has the velocity of the rigid body in this step
   Vec<D> pressed = Vec<D>::Zero();  ///< impulse on the material along the normal in this step [N s]
   Vec<D> rubbed = Vec<D>::Zero();   ///< across it
+  Vec<D> u = Vec<D>::Zero();        ///< mean velocity of the rigid body there while impulses act in this step [m/s]
 };
 
 /// Finds in every step where material touches rigid bodies, and exchanges impulses there.

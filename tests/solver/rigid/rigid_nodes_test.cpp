@@ -54,8 +54,11 @@ TYPED_TEST(RigidIn, ABallThatFallsOntoABlockGivesItsMomentum)
   auto m = block_and_ball<TypeParam>(along<D>(D - 1, 0.5), along<D>(D - 1, -1) + along<D>(0, 0.5), 50, 0.3);
   const Vec<D> before = momentum_of_all(m);
   const Real speed = m.state.rigid[0].v[D - 1];
+  const auto kinetic = [&m] { return m.state.rigid[0].kinetic(m.problem.rigid.bodies[0]); };
+  const Real energy = kinetic();
   for (int step = 0; step < 10; ++step)
     advance(m, 1e-4);
+  EXPECT_NEAR(kinetic() - energy, -m.state.rigid[0].done.moved, 1e-11 * energy) << "it loses the work that it does";
   EXPECT_LT((momentum_of_all(m) - before).norm(), 1e-11 * totals(m).mass);
   EXPECT_GT(m.state.rigid[0].v[D - 1], speed);
   EXPECT_LT(m.state.rigid[0].done.impulse[D - 1], 0) << "on the block";
