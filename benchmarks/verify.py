@@ -51,6 +51,7 @@ CASES = [
     "hertz_contact",
     "sphere_container",
     "infinite_slope",
+    "fluid_layer",
     "granular_chute",
     "strip_footing",
     "factor_of_safety",
