@@ -52,6 +52,7 @@ CASES = [
     "sphere_container",
     "infinite_slope",
     "fluid_layer",
+    "dam_break",
     "granular_chute",
     "strip_footing",
     "factor_of_safety",
