@@ -53,6 +53,7 @@ CASES = [
     "infinite_slope",
     "fluid_layer",
     "dam_break",
+    "granular_layer",
     "granular_chute",
     "strip_footing",
     "factor_of_safety",
