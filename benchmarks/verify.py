@@ -55,6 +55,7 @@ CASES = [
     "dam_break",
     "granular_layer",
     "granular_chute",
+    "clay_block",
     "strip_footing",
     "factor_of_safety",
     "column_collapse",
