@@ -9,7 +9,7 @@ namespace talus {
 namespace {
 
 /// Where one body has a corner and the other is flat, its filling changes less, and the flat one says which way the surface faces.  With 6 the
-/// front edge of a sliding block still ploughs: it slides 4 to 9 % too short a way at twice the limit of friction, with 60 to 0.3 %.
+/// front edge of a sliding block still ploughs: it slides 4 to 9 % too short a way at twice the limit of friction, with 60 at most 1 %.
 constexpr int power_of_steepness = 60;
 /// Share of a neighbour in the surface at a node, relative to the node itself: impulses act on all nodes that rows of operators reach.
 constexpr Real weight_of_neighbour = 0.5;
