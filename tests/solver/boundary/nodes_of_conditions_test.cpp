@@ -24,6 +24,15 @@ struct Square : NodesInASquare {
     walls.keep_impulses();
     return motion;
   }
+  /// What the walls leave of a remapped velocity, where that of the step was `of_step`.
+  Vec<2> held_after_remap(const Vec<2>& place, const Vec<2>& v, const Vec<2>& of_step)
+  {
+    const std::size_t n = node(place);
+    nodes.remapped.resize(nodes.sum.size());
+    nodes.remapped[n] = {v, of_step};
+    walls.hold(0, nodes);
+    return nodes.remapped[n].v;
+  }
   const BoundaryCondition<2>& first() const { return walls.conditions().front(); }
 };
 
@@ -106,11 +115,7 @@ TEST(NodesAtWalls, FrictionRubsByItsCoefficientTimesTheImpulse)
   EXPECT_NEAR(work.arrival, 8 * 0.5 * (old[1] + 0), rounding);
 
   // it rubs now, so that what is remapped is replaced by the step's own
-  const std::size_t n = square.node({0.5, 0});
-  square.nodes.remapped.resize(square.nodes.sum.size());
-  square.nodes.remapped[n] = {{5, 6}, {7, 8}};
-  square.walls.hold(0, square.nodes);
-  expect_near(square.nodes.remapped[n].v, {7, 8});
+  expect_near(square.held_after_remap({0.5, 0}, {5, 6}, {7, 8}), {7, 8});
 }
 
 TEST(NodesAtWalls, FrictionSticksExactlyAndLetsGo)
@@ -124,14 +129,8 @@ TEST(NodesAtWalls, FrictionSticksExactlyAndLetsGo)
   expect_near(square.first().impulse, {-2, 8});
 
   // it does not rub any more: held back from going in, not from leaving
-  const std::size_t n = square.node({0.5, 0});
-  square.nodes.remapped.resize(square.nodes.sum.size());
-  square.nodes.remapped[n] = {{5, -6}, {7, 8}};
-  square.walls.hold(0, square.nodes);
-  expect_near(square.nodes.remapped[n].v, {5, 0});
-  square.nodes.remapped[n] = {{5, 6}, {7, 8}};
-  square.walls.hold(0, square.nodes);
-  expect_near(square.nodes.remapped[n].v, {5, 6});
+  expect_near(square.held_after_remap({0.5, 0}, {5, -6}, {7, 8}), {5, 0});
+  expect_near(square.held_after_remap({0.5, 0}, {5, 6}, {7, 8}), {5, 6});
 }
 
 TEST(NodesAtWalls, PlanesThatNothingTouchesDoNotAct)
@@ -150,17 +149,14 @@ TEST(NodesAtWalls, PlanesThatNothingTouchesDoNotAct)
 
   square.nodes.open.assign(square.nodes.sum.size(), 0);
   square.nodes.open[n] = static_cast<std::uint8_t>(1 << of_corner->number);
-  square.nodes.remapped.resize(square.nodes.sum.size());
   const Vec<2> into_both(-2, -4), out_of_one(0, -4);
   expect_near(square.meet({0, 0}, into_both, {0, 0}).v, out_of_one);
   expect_near(square.first().impulse, {4, 0});
   const NodeOfField corner = square.nodes.of_field(static_cast<Index>(n));
   expect_near(square.walls.held(corner, 0, into_both), out_of_one);
   expect_near(square.walls.held({corner.node}, 0, into_both), {0, 0});
-  square.nodes.remapped[n] = {into_both, {7, 8}};
   square.nodes.slides[n] = 0;
-  square.walls.hold(0, square.nodes);
-  expect_near(square.nodes.remapped[n].v, out_of_one);
+  expect_near(square.held_after_remap({0, 0}, into_both, {7, 8}), out_of_one);
   NodeMotion<2> alone{into_both, {0, 0}};
   square.walls.apply(corner, Square::kick, 4, alone, square.work);
   expect_near(alone.v, out_of_one);
