@@ -40,6 +40,7 @@ struct Particles {
   ParticleColumn<Real> volume_ratio;  ///< bodies with averaged volumes: (averaged / own volume ratio)^(1/D)
   ParticleColumn<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]
   ParticleColumn<Real> pore;          ///< pore pressure, part of `stress`; 0 in bodies whose laws use total stress [Pa]
+  ParticleColumn<Real> side;          ///< of the nearest sheet, see SideOfSheet [-]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
 
@@ -65,6 +66,7 @@ struct Particles {
     f("mass", "kg", self.mass), f("volume0", "m^D", self.volume0), f("volume", "m^D", self.volume);
     f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied);
     f("volume_ratio", "-", self.volume_ratio), f("viscous_pressure", "Pa", self.viscous), f("pore_pressure", "Pa", self.pore);
+    f("side", "-", self.side);
   }
 };
 

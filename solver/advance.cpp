@@ -33,6 +33,14 @@ void apply_nodal_loads(Model<D>& m)
     apply(m.problem.loads, time, m.state.stage.ramp(time), m.problem.mesh, m.problem.own, std::span(field.nodes.sum), m.work.sums.on_mesh);
 }
 
+/// Unites the fields on both sides of sheets at nodes that no sheet parts.
+template <int D>
+void unite_sides_of_sheets(Model<D>& m)
+{
+  m.work.sheets.find(m.problem.mesh, m.problem.rigid, m.state.rigid);
+  m.work.sheets.unite(m.problem.mesh, m.problem.own, m.work.fields);
+}
+
 /// Gives mass, momentum and force of nodes of small mass to their hosts.
 template <int D>
 void lump_small_masses(Model<D>& m)
@@ -88,7 +96,7 @@ void apply_rigid_bodies(Model<D>& m, const Kick& kick, Real dt)
   const std::vector<RigidState<D>> before = state.rigid;
   begin_step(scene, m.problem.loads.gravity(state.clock.time, state.stage.ramp(state.clock.time)), kick.length(), kick.to, state.rigid);
   RigidNodes<D>& nodes = m.work.rigid;
-  nodes.find(m.problem.mesh, m.problem.own, *m.work.strips, scene, state.rigid, m.work.fields);
+  nodes.find(m.problem.mesh, m.problem.own, *m.work.strips, scene, state.rigid, m.work.sheets, m.work.fields);
   nodes.act(kick, *m.problem.ranks, scene, state.boundary, state.rigid, m.work.fields, m.work.sums.at_nodes);
   std::vector<RigidContact<D>> contacts = find_contacts<D>(scene, state.rigid, dt);
   act_on_contacts<D>(scene, dt, contacts, state.rigid);
@@ -104,6 +112,7 @@ void apply_local_damping(Model<D>& m)
     return;
   for (VelocityField<D>& field : m.work.fields)
     find_net_acceleration(field.nodes);
+  m.work.sheets.copy_to_field_behind(std::span(m.work.fields), [](Nodes<D>& nodes) -> auto& { return nodes.felt; });
   m.transfer->filter_acceleration(m);
   if (m.state.stage.damping > 0)
     for (VelocityField<D>& field : m.work.fields)
@@ -116,6 +125,7 @@ void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 {
   for (VelocityField<D>& field : m.work.fields)
     field.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, field.nodes, m.work.sums.beyond_nodes);
+  m.work.sheets.copy_to_field_behind(std::span(m.work.fields), [](Nodes<D>& nodes) -> auto& { return nodes.motion; });
   m.transfer->send_motion(m);
 }
 
@@ -141,12 +151,14 @@ void record_node_sums(Model<D>& m)
   work.rigid.add_sums(problem.mesh, state.rigid, work.fields, work.sums.rigid);
 }
 
-/// Conducts heat within each body whose law has temperature.
+/// Conducts heat within each body whose law has temperature, not through sheets.
 template <int D>
 void conduct_heat(Model<D>& m, Real dt)
 {
-  for (Index body = 0; body < m.n_bodies(); ++body)
-    conduct_heat(m.problem.mesh, m.state.materials[static_cast<std::size_t>(body)].law(), *m.work.strips, body, dt, *m.work.heat);
+  const ParticleStrips<D>& strips = *m.work.strips;
+  for (Index group = 0; group < strips.groups(); ++group)
+    conduct_heat(m.problem.mesh, m.state.materials[static_cast<std::size_t>(strips.body_of(group))].law(), strips, group, dt,
+                 *m.work.heat);
 }
 
 /// Averaged volumes are needed before the stress, heat is conducted after it.
@@ -261,6 +273,7 @@ void make_step(Model<D>& m, Real dt)
   transfer.particles_to_nodes(m);  //  3
   watch.lap(state.timings.scatter);
   transfer.assemble_nodes(m);  //  4
+  unite_sides_of_sheets(m);
   apply_nodal_loads(m);
   lump_small_masses(m);  //  5
   tie_cuts(m, dt);

@@ -43,12 +43,15 @@ template <int D, class F>
 void for_each_particle(const RunView<D>& view, std::size_t key, F&& f)
 {
   if (view.strips != nullptr) {
-    for (const Strip& strip : view.strips->strips(key)) {
-      const StripColumns<D> columns = view.strips->columns(strip);
-      const StripColumn<Real> history = view.strips->history(strip);
-      for (Index i = 0; i < strip.n; ++i)
-        f(StripParticle<D>{columns, static_cast<std::size_t>(i), history});
-    }
+    const auto blocks = static_cast<std::size_t>(view.order.blocks);
+    view.strips->for_each_key_of(static_cast<Index>(key / blocks), static_cast<Index>(key % blocks), [&](std::size_t of_side) {
+      for (const Strip& strip : view.strips->strips(of_side)) {
+        const StripColumns<D> columns = view.strips->columns(strip);
+        const StripColumn<Real> history = view.strips->history(strip);
+        for (Index i = 0; i < strip.n; ++i)
+          f(StripParticle<D>{columns, static_cast<std::size_t>(i), history});
+      }
+    });
     return;
   }
   const Material& material = view.state.materials[key / static_cast<std::size_t>(view.order.blocks)];

@@ -20,7 +20,8 @@ struct RunView {
   std::string_view stage_name;
   std::int64_t migrated;          ///< number of particles that moved between this rank and others so far
   std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
-  /// Loads that acted on particles in the last step, of each body in each block (CellOrder::key()); empty in scenes without such loads.
+  /// Loads that acted on particles in the last step, of each group of particles in each block (ParticleStrips::key()); empty in
+  /// scenes without such loads.
   std::span<const ParticleLoadSums<D>> loads = {};
   std::span<const ExactSums<ForceAndMoment<D>>> on_surfaces = {};  ///< forces in the last step of each load on a surface, of this rank [N]
   const ParticleStrips<D>* strips = nullptr;                       ///< where the particles are during a stage, if they are in strips

@@ -26,7 +26,9 @@ Vec<D> loads_on_body(const RunView<D>& view, std::size_t body)
     return Vec<D>::Zero();
   ExactSums<ForceAndMoment<D>> sum;
   for (Index block = 0; !view.loads.empty() && block < view.order.blocks; ++block)
-    sum.add(view.loads[view.order.key(static_cast<Index>(body), block)].force);
+    for (std::size_t key = view.order.key(static_cast<Index>(body), block); key < view.loads.size();
+         key += view.order.key(static_cast<Index>(view.state.bodies.size()), 0))  // in front of sheets, then behind
+      sum.add(view.loads[key].force);
   for (std::size_t k = 0; k < view.on_surfaces.size(); ++k)
     if (view.problem.loads.on_surfaces[k].body == static_cast<Index>(body))
       sum.add(view.on_surfaces[k]);

@@ -86,6 +86,35 @@ DrawnSurface<2> surface_of_facets(const FacetSurface<2>& facets)
 }
 DrawnSurface<3> surface_of_facets(const FacetSurface<3>& facets) { return {facets.corners(), facets.facets()}; }
 
+/// In 2-D a sheet is drawn as wide as this times the radius of the circle around it: a line would not be seen.
+constexpr Real width_of_sheet = 0.03;
+
+DrawnSurface<2> surface_of_sheet(const RigidShape<2>& shape)
+{
+  DrawnSurface<2> sheet;
+  for (const auto& facet : shape.facets()->facets()) {
+    const auto first = static_cast<Index>(sheet.corners.size());
+    std::array<Vec<2>, 2> ends;
+    for (std::size_t k = 0; k < 2; ++k)
+      ends[k] = shape.facets()->corners()[static_cast<std::size_t>(facet[k])];
+    const Vec<2> aside = 0.5 * width_of_sheet * shape.radius() * area_of<2>(ends.data()).normalized();
+    for (const Vec<2>& end : ends)
+      sheet.corners.insert(sheet.corners.end(), {end - aside, end + aside});
+    sheet.triangles.push_back({first, first + 2, first + 3});
+    sheet.triangles.push_back({first, first + 3, first + 1});
+  }
+  return sheet;
+}
+DrawnSurface<3> surface_of_sheet(const RigidShape<3>& shape) { return surface_of_facets(*shape.facets()); }
+
+template <int D>
+DrawnSurface<D> drawn(const RigidShape<D>& shape)
+{
+  if (shape.is_ball())
+    return surface_of_ball(shape);
+  return shape.is_sheet() ? surface_of_sheet(shape) : surface_of_facets(*shape.facets());
+}
+
 }  // namespace
 
 template <int D>
@@ -97,7 +126,7 @@ Frame::MeshFile rigid_of_frame(const RunView<D>& view, std::filesystem::path fil
   for (std::size_t r = 0; r < view.state.rigid.size(); ++r) {
     const RigidState<D>& state = view.state.rigid[r];
     const RigidShape<D>& shape = *view.problem.rigid.bodies[r].shape;
-    const DrawnSurface<D> surface = shape.is_ball() ? surface_of_ball(shape) : surface_of_facets(*shape.facets());
+    const DrawnSurface<D> surface = drawn(shape);
     for (const Vec<D>& corner : surface.corners) {
       const Vec<D> place = state.x + state.in_scene(corner), v = state.velocity_at(place);
       for (Index d = 0; d < 3; ++d) {

@@ -97,6 +97,39 @@ Facets<D> facets_of(const Polygon& polygon)
   });
 }
 
+/// The line through points, whose front lies to the right of the way along it; or the flat convex polygon of these corners, which turn
+/// counterclockwise for who sees its front.
+template <int D>
+Facets<D> facets_of_sheet(const std::vector<std::vector<Real>>& points)
+{
+  Facets<D> all;
+  for (const std::vector<Real>& point : points)
+    all.corners.push_back(vector_of<D>(point));
+  const auto n = static_cast<Index>(all.corners.size());
+  if constexpr (D == 2) {
+    for (Index i = 0; i + 1 < n; ++i)
+      all.facets.push_back({i, i + 1});
+  } else {
+    const auto area = [&](Index i, Index j, Index k) {
+      const std::array<Vec3, 3> at{all.corners[to_size(i)], all.corners[to_size(j)], all.corners[to_size(k)]};
+      return area_of<3>(at.data());
+    };
+    Vec3 total = Vec3::Zero();
+    for (Index i = 1; i + 1 < n; ++i) {
+      all.facets.push_back({0, i, i + 1});
+      total += area(0, i, i + 1);
+    }
+    const Real size = total.norm();
+    constexpr Real flat = 1e-6;
+    for (Index i = 0; i < n; ++i) {
+      const Vec3 turn = area(i, (i + 1) % n, (i + 2) % n);
+      if (!(turn.dot(total) >= 0) || std::abs((all.corners[to_size(i)] - all.corners[0]).dot(total)) > flat * size * std::sqrt(size))
+        throw std::invalid_argument("the corners of a sheet have to be those of a flat convex polygon; take a file for others");
+    }
+  }
+  return all;
+}
+
 /// Throws SceneErrors of the file, std::invalid_argument for a shape that cannot be.
 template <int D>
 Facets<D> facets_of(const Scene& scene, const RigidSpec& spec)
@@ -112,8 +145,10 @@ Facets<D> facets_of(const Scene& scene, const RigidSpec& spec)
             throw std::invalid_argument("is no shape of a rigid body");
         },
         *spec.shape);
+  if (!spec.sheet.empty())
+    return facets_of_sheet<D>(spec.sheet);
   if constexpr (D == 3) {
-    const TriangleSheet sheet = read_stl((folder_of(scene) / spec.file).lexically_normal());
+    const TriangleSheet sheet = read_stl((folder_of(scene) / (spec.file.empty() ? spec.sheet_file : spec.file)).lexically_normal());
     const Vec3 at = vector_of<3>(spec.at);
     Facets<3> all;
     for (const auto& corner : sheet.corners)
@@ -140,7 +175,7 @@ class RigidBuilder {
 
   void add(const RigidSpec& spec)
   {
-    const std::string_view key = spec.shape ? "shape" : "file";
+    const std::string_view key = spec.key_of_shape();
     EnclosedSolid<D> solid;
     RigidBody<D> body{.name = spec.name, .shape = {}, .mass = 0, .friction = spec.friction, .motion = {}};
     try {
@@ -162,7 +197,9 @@ class RigidBuilder {
       body.motion = RigidMotion<D>{state.v, state.spin, spec.table};
     setup_.notes.push_back(fmt::format("rigid body \"{}\": {}{}, friction {:.6g}", body.name,
                                        body.is_free() ? fmt::format("{:.6g} kg, free", body.mass) : std::string("with given motion"),
-                                       body.shape->is_ball() ? "" : fmt::format(", {} facets", body.shape->facets()->facets().size()),
+                                       body.shape->is_ball() ? ""
+                                                             : fmt::format(", {}{} facets", body.shape->is_sheet() ? "a sheet of " : "",
+                                                                           body.shape->facets()->facets().size()),
                                        body.friction));
     setup_.conditions.rigid.bodies.push_back(std::move(body));
     setup_.state.rigid.push_back(state);
@@ -180,12 +217,13 @@ class RigidBuilder {
     }
     Facets<D> facets = facets_of<D>(scene_, spec);
     const FacetSurface<D> in_scene(facets.corners, facets.facets);
-    if (const std::string fault = in_scene.fault(); !fault.empty())
+    if (const std::string fault = spec.is_sheet() ? in_scene.fault_of_sheet() : in_scene.fault(); !fault.empty())
       throw std::invalid_argument("the surface " + fault);
-    solid = in_scene.solid();
+    solid = spec.is_sheet() ? in_scene.sheet() : in_scene.solid();
     for (Vec<D>& corner : facets.corners)
       corner -= solid.centre;
-    return std::make_shared<const RigidShape<D>>(FacetSurface<D>(std::move(facets.corners), std::move(facets.facets)));
+    return std::make_shared<const RigidShape<D>>(FacetSurface<D>(std::move(facets.corners), std::move(facets.facets)),
+                                                 spec.is_sheet() ? FacetsOf::sheet : FacetsOf::solid);
   }
 
   const Scene& scene_;
@@ -232,7 +270,7 @@ void check_rigid_places(const Scene& scene, Communicator& ranks, const Setup<D>&
   for (std::size_t r = 0; r < rigid.bodies.size(); ++r) {
     const SourceLocation& where = scene.rigid[r].where;
     for (const Body& body : state.bodies) {
-      if (presence_of(body.name, scene.stages).from != 0)
+      if (rigid.bodies[r].shape->is_sheet() || presence_of(body.name, scene.stages).from != 0)
         continue;
       std::int64_t inside = 0;
       for (Index row = body.begin; row < body.end; ++row) {

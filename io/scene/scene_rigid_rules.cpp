@@ -5,10 +5,13 @@ namespace talus {
 
 void RigidSpec::check(std::vector<std::string>& problems) const
 {
-  if (shape.has_value() == !file.empty())
-    problems.emplace_back("give a shape or a file: exactly one of them says what the body looks like");
-  if (!at.empty() && file.empty())
-    problems.emplace_back("at is where the origin of a file lies; a shape has places of its own");
+  const int looks = (shape ? 1 : 0) + (file.empty() ? 0 : 1) + (sheet.empty() ? 0 : 1) + (sheet_file.empty() ? 0 : 1);
+  if (looks != 1)
+    problems.emplace_back("give one of shape, file, sheet and sheet_file: exactly one of them says what the body looks like");
+  if (!at.empty() && file.empty() && sheet_file.empty())
+    problems.emplace_back("at is where the origin of a file lies; shapes and sheets have places of their own");
+  if (is_sheet() && density)
+    problems.emplace_back("a sheet has no volume: give its mass instead of a density");
   if (mass && density)
     problems.emplace_back("give mass or density, not both");
   if (motion == RigidMotionKind::free && !mass && !density)
@@ -39,6 +42,10 @@ class RigidRules : private SceneRuleBase {
         shape(path + ".shape", *rigid.shape);
       if (!rigid.file.empty() && scene_.dimension == 2)
         add(path + ".file", "an STL file is a surface in space: in 2 dimensions give a shape");
+      if (!rigid.sheet_file.empty() && scene_.dimension == 2)
+        add(path + ".sheet_file", "an STL file is a surface in space: in 2 dimensions give the points of a sheet");
+      if (rigid.is_sheet())
+        sheet(path, rigid);
       fits(path + ".at", rigid.at);
       fits(path + ".velocity", rigid.velocity);
       for (const auto& [key, list] : {std::pair{".inertia", &rigid.inertia}, std::pair{".angular_velocity", &rigid.angular_velocity}})
@@ -54,6 +61,26 @@ class RigidRules : private SceneRuleBase {
   }
 
  private:
+  void sheet(const std::string& path, const RigidSpec& rigid)
+  {
+    const std::string key = fmt::format("{}.{}", path, rigid.key_of_shape());
+    const auto least = static_cast<std::size_t>(scene_.dimension);
+    if (!rigid.sheet.empty() && scene_.dimension != 0 && rigid.sheet.size() < least)
+      add(key, fmt::format("a sheet needs at least {} points in {} dimensions, not {}", least, least, rigid.sheet.size()));
+    for (std::size_t k = 0; k < rigid.sheet.size(); ++k) {
+      fits(fmt::format("{}[{}]", key, k), rigid.sheet[k]);
+      if (rigid.sheet[k].empty())
+        add(fmt::format("{}[{}]", key, k), "a point has one number per dimension");
+      if (k > 0 && rigid.sheet[k] == rigid.sheet[k - 1])
+        add(fmt::format("{}[{}]", key, k), "repeats the point before: leave it out");
+    }
+    if (!scene_.contacts.empty())
+      add(key, "sheets and contacts of bodies cannot act in one scene yet: leave one of them out");
+    if (!scene_.cuts.empty())
+      add(key, "sheets and cuts of the mesh cannot act in one scene yet: leave one of them out");
+    if (scene_.kernel == "projected" && scene_.projected && scene_.projected->surfaces == AtSurfaces::extended)
+      add(key, "beside a sheet gradients are not extended: leave out `projected: {surfaces: extended}`");
+  }
   void shape(const std::string& path, const Shape& shape)
   {
     fits(path, shape);

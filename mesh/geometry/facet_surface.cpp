@@ -94,6 +94,8 @@ FacetSurface<D>::FacetSurface(Corners corners, Facets facets)
   normal_of_node_.assign(corners_.size(), Vec<D>::Zero());
   normal_of_edge_.resize(D == 3 ? facets_.size() : 0);
   std::map<std::array<Index, 2>, Vec<D>> of_edge;
+  std::map<std::array<Index, 2>, int> facets_of_edge;
+  std::vector<int> facets_of_node(corners_.size(), 0);
   const auto edge = [&](std::size_t f, std::size_t opposite) {
     std::array<Index, 2> ends{facets_[f][(opposite + 1) % D], facets_[f][(opposite + 2) % D]};
     std::ranges::sort(ends);
@@ -108,13 +110,25 @@ FacetSurface<D>::FacetSurface(Corners corners, Facets facets)
         const Vec<3> a = at[(k + 1) % 3] - at[k], b = at[(k + 2) % 3] - at[k];
         angle = std::atan2(cross_of(a, b).norm(), a.dot(b));
         of_edge.try_emplace(edge(f, k), Vec<D>::Zero()).first->second += normal_[f];
+        ++facets_of_edge[edge(f, k)];
       }
+      ++facets_of_node[static_cast<std::size_t>(facets_[f][k])];
       normal_of_node_[static_cast<std::size_t>(facets_[f][k])] += angle * normal_[f];
     }
   }
+  node_on_rim_.assign(corners_.size(), false);
+  if constexpr (D == 2)
+    for (std::size_t n = 0; n < corners_.size(); ++n)
+      node_on_rim_[n] = facets_of_node[n] == 1;
+  edge_on_rim_.resize(normal_of_edge_.size());
   for (std::size_t f = 0; f < normal_of_edge_.size(); ++f)
-    for (std::size_t k = 0; k < D; ++k)
+    for (std::size_t k = 0; k < D; ++k) {
       normal_of_edge_[f][k] = of_edge.at(edge(f, k));
+      edge_on_rim_[f][k] = facets_of_edge.at(edge(f, k)) == 1;
+      if (edge_on_rim_[f][k])
+        for (const Index end : edge(f, k))
+          node_on_rim_[static_cast<std::size_t>(end)] = true;
+    }
 }
 
 template <int D>
@@ -173,19 +187,19 @@ typename FacetSurface<D>::Nearest FacetSurface<D>::nearest_of(Index facet, const
 }
 
 template <int D>
-Vec<D> FacetSurface<D>::normal_at(std::size_t facet, const std::array<Real, D>& share) const noexcept
+typename FacetSurface<D>::Place FacetSurface<D>::place_at(std::size_t facet, const std::array<Real, D>& share) const noexcept
 {
   std::size_t away = 0, last = 0;  // corners that the point is not at, and one of these
   for (std::size_t k = 0; k < D; ++k)
     if (share[k] < on_edge)
       ++away, last = k;
   if (away == 0)
-    return normal_[facet];
+    return {normal_[facet], false};
   if constexpr (D == 3)
     if (away == 1)
-      return normal_of_edge_[facet][last];
-  const auto corner = static_cast<std::size_t>(std::ranges::max_element(share) - share.begin());
-  return normal_of_node_[static_cast<std::size_t>(facets_[facet][corner])];
+      return {normal_of_edge_[facet][last], edge_on_rim_[facet][last]};
+  const auto corner = static_cast<std::size_t>(facets_[facet][static_cast<std::size_t>(std::ranges::max_element(share) - share.begin())]);
+  return {normal_of_node_[corner], node_on_rim_[corner]};
 }
 
 template <int D>
@@ -193,29 +207,42 @@ SurfaceDistance<D> FacetSurface<D>::distance(const Vec<D>& x) const
 {
   const Index facet = tree_.nearest(x, [&](Index f) { return (x - nearest_of(f, x).place).squaredNorm(); });
   const Nearest nearest = nearest_of(facet, x);
-  const Vec<D> outward = normal_at(static_cast<std::size_t>(facet), nearest.share), away = x - nearest.place;
+  const Place at = place_at(static_cast<std::size_t>(facet), nearest.share);
+  const Vec<D>& outward = at.normal;
+  const Vec<D> away = x - nearest.place;
   const Real distance = away.norm();
   const bool behind = away.dot(outward) < 0;
   if (distance <= round_off * (size_ + x.norm()))  // its direction would be that of round-off
-    return {behind ? -distance : distance, outward.stableNormalized()};
-  return {behind ? -distance : distance, (behind ? -1 : 1) / distance * away};
+    return {behind ? -distance : distance, outward.stableNormalized(), at.on_rim};
+  return {behind ? -distance : distance, (behind ? -1 : 1) / distance * away, at.on_rim};
 }
+
+namespace {
+
+/// Calls f(border, sense) for the ends of segments, or the edges of triangles with their lower corner first; the sense is that in which the
+/// facet passes them.
+template <int D, class F>
+void for_each_border(const std::vector<std::array<Index, D>>& facets, F&& f)
+{
+  for (const auto& facet : facets)
+    if constexpr (D == 2) {
+      f(std::array<Index, 1>{facet[0]}, -1);
+      f(std::array<Index, 1>{facet[1]}, 1);
+    } else {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index from = facet[k], to = facet[(k + 1) % 3];
+        f(std::array<Index, 2>{std::min(from, to), std::max(from, to)}, from < to ? 1 : -1);
+      }
+    }
+}
+
+}  // namespace
 
 template <int D>
 std::string FacetSurface<D>::fault() const
 {
   std::map<std::array<Index, D - 1>, int> borders;  // how often each is passed in one sense minus the other
-  const auto pass = [&](const std::array<Index, D - 1>& border, int sense) { borders.try_emplace(border, 0).first->second += sense; };
-  for (const auto& facet : facets_)
-    if constexpr (D == 2) {
-      pass({facet[0]}, -1);
-      pass({facet[1]}, 1);
-    } else {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index from = facet[k], to = facet[(k + 1) % 3];
-        pass({std::min(from, to), std::max(from, to)}, from < to ? 1 : -1);
-      }
-    }
+  for_each_border<D>(facets_, [&](const auto& border, int sense) { borders.try_emplace(border, 0).first->second += sense; });
   for (const auto& [border, surplus] : borders)
     if (surplus != 0) {
       const Vec<D>& at = corners_[static_cast<std::size_t>(border[0])];
@@ -256,6 +283,52 @@ EnclosedSolid<D> FacetSurface<D>::solid() const
   spread.template topLeftCorner<D, D>() = second;
   solid.inertia = spread.trace() * Mat3::Identity() - spread;
   return solid;
+}
+
+template <int D>
+std::string FacetSurface<D>::fault_of_sheet() const
+{
+  std::map<std::array<Index, D - 1>, std::pair<int, int>> borders;  // how often each is passed, and in one sense minus the other
+  for_each_border<D>(facets_, [&](const auto& border, int sense) {
+    auto& [passes, surplus] = borders[border];
+    ++passes, surplus += sense;
+  });
+  bool has_rim = false;
+  for (const auto& [border, passed] : borders) {
+    has_rim |= passed.first == 1;
+    if (passed.first <= 2 && std::abs(passed.second) == passed.first % 2)
+      continue;
+    const Vec<D>& at = corners_[static_cast<std::size_t>(border[0])];
+    return fmt::format("{} at ({:.6g})", passed.first > 2 ? "branches" : "has facets that show different sides",
+                       fmt::join(at.begin(), at.end(), ", "));
+  }
+  return has_rim ? std::string() : std::string("is closed: it is that of a solid");
+}
+
+template <int D>
+EnclosedSolid<D> FacetSurface<D>::sheet() const
+{
+  EnclosedSolid<D> sheet;
+  Mat<D> second = Mat<D>::Zero();  // integral of x x^T
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const auto at = corners_of(f);
+    const Real area = area_of<D>(at.data()).norm();
+    Vec<D> sum = Vec<D>::Zero();
+    Mat<D> products = Mat<D>::Zero();
+    for (const Vec<D>& corner : at) {
+      sum += corner;
+      products += corner * corner.transpose();
+    }
+    sheet.volume += area;
+    sheet.centre += area / D * sum;
+    second += area / (D * (D + 1)) * (products + sum * sum.transpose());
+  }
+  sheet.centre /= sheet.volume;
+  second -= sheet.volume * sheet.centre * sheet.centre.transpose();
+  Mat3 spread = Mat3::Zero();
+  spread.template topLeftCorner<D, D>() = second;
+  sheet.inertia = spread.trace() * Mat3::Identity() - spread;
+  return sheet;
 }
 
 template <int D>

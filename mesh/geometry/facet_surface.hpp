@@ -11,8 +11,9 @@ namespace talus {
 /// The distance from a surface [m], negative behind it, and its gradient there: a unit vector that points away from what is behind.
 template <int D>
 struct SurfaceDistance {
-  Real distance;
-  Vec<D> normal;
+  Real distance{};
+  Vec<D> normal = Vec<D>::Zero();
+  bool on_rim = false;  ///< the nearest point lies on the rim of an open surface; behind is then what its facet there has behind
 };
 
 /// Volume [m^D], centre [m] and moments of inertia of what a closed surface encloses, for a density of 1.
@@ -43,8 +44,13 @@ class FacetSurface {
 
   /// What is wrong with it as the surface of a solid, in words; empty if it is closed and its facets show their fronts.
   std::string fault() const;
+  /// What is wrong with it as a sheet, in words; empty if its facets show the same side wherever two meet, at most two at each edge, and it
+  /// has a rim.
+  std::string fault_of_sheet() const;
   /// Of a surface without fault.
   EnclosedSolid<D> solid() const;
+  /// The same of a sheet of unit thickness.
+  EnclosedSolid<D> sheet() const;
   /// Points on the surface that are nowhere farther apart than `spacing` [m]: corners, and points of edges and facets.
   std::vector<Vec<D>> samples(Real spacing) const;
 
@@ -56,8 +62,13 @@ class FacetSurface {
     Vec<D> place;
     std::array<Real, D> share;  // of the corners
   };
+  /// What is at a point of the surface: the mean normal of the facets that meet there, and whether the surface ends there.
+  struct Place {
+    Vec<D> normal;
+    bool on_rim;
+  };
   Nearest nearest_of(Index facet, const Vec<D>& x) const noexcept;
-  Vec<D> normal_at(std::size_t facet, const std::array<Real, D>& share) const noexcept;
+  Place place_at(std::size_t facet, const std::array<Real, D>& share) const noexcept;
   std::array<Vec<D>, D> corners_of(std::size_t facet) const noexcept;
 
   Corners corners_;
@@ -66,6 +77,8 @@ class FacetSurface {
   std::vector<Vec<D>> normal_of_node_;  // of corners
   /// 3-D: of the edge opposite each corner of a facet.
   std::vector<std::array<Vec<D>, D>> normal_of_edge_;
+  std::vector<std::array<bool, D>> edge_on_rim_;  // 3-D: likewise
+  std::vector<bool> node_on_rim_;                 // of corners
   Real size_ = 0;  // diagonal of the bounding box [m]
   BoxTree<D> tree_;
 };

@@ -2,16 +2,6 @@
 
 namespace talus {
 
-namespace {
-
-template <int D>
-bool takes_part(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
-{
-  return sum.is_seen() && sum.mass > nodes.least_share * sum.lightest && sum.mass > nodes.least_share_of_gross * sum.gross;
-}
-
-}  // namespace
-
 template <int D>
 SmallMassNodes<D>::SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own)
     : near_(copies_of_nodes(ranks, subdomain, MessageTag::small_mass_nodes, spread_by_rings(mesh, own.owned, 2)))
@@ -134,7 +124,7 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
   nodes.in_use.for_each_ascending([&](Index node) {
     const auto n = static_cast<std::size_t>(node);
     const NodeSum<D>& sum = nodes.sum[n];
-    nodes.active[n] = takes_part(sum, nodes) ? 1 : 0;
+    nodes.active[n] = has_own_motion(sum, nodes) ? 1 : 0;
     weight_[n] = nodes.active[n] ? sum.mass : 0;
     ring_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0)) ? 1 : 0;
     if (ring_[n] != 0)

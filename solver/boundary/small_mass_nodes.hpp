@@ -6,6 +6,13 @@
 
 namespace talus {
 
+/// Whether a node with this sum has enough mass for a motion of its own.
+template <int D>
+bool has_own_motion(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
+{
+  return sum.is_seen() && sum.mass > nodes.least_share * sum.lightest && sum.mass > nodes.least_share_of_gross * sum.gross;
+}
+
 /// The mass, momentum and force of a node of small mass, or of none, go to its host nodes: the active nodes of its first ring, or else of its
 /// second ring, in proportion to their masses.  It moves with the mean velocity of its hosts.  Because one map is the transpose of the
 /// other, momentum is conserved, and a uniform motion stays uniform.  Nodes of negative mass, which the weights of moving least squares

@@ -6,11 +6,11 @@ namespace talus {
 
 template <int D>
 void WallGaps<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const BoundaryConditions<D>& conditions,
-                        const std::vector<std::vector<Index>>& bodies_of_field, std::span<VelocityField<D>> fields)
+                        const std::vector<std::vector<Index>>& groups_of_field, std::span<VelocityField<D>> fields)
 {
   planes_ = conditions.gap_planes();
   any_ = ranks.sum(static_cast<std::int64_t>(planes_.size())) > 0;
-  bodies_of_field_ = bodies_of_field;
+  groups_of_field_ = groups_of_field;
   const auto n_nodes = static_cast<std::size_t>(any_ ? mesh.n_nodes() : 0);
   for (VelocityField<D>& field : fields)
     field.nodes.open.assign(n_nodes, 0);
@@ -33,7 +33,7 @@ void WallGaps<D>::find(const Mesh<D>& mesh, const ParticleStrips<D>& strips, std
     touched_.assign(planes_.size(), 0);
     parallel_for_uneven(static_cast<Index>(planes_.size()), [&](Index k) {
       const auto& plane = planes_[static_cast<std::size_t>(k)];
-      const Real reach = reach_beside<D>(strips, bodies_of_field_[f], mesh.cells_of_node()[plane.node], mesh.node(plane.node), plane.normal,
+      const Real reach = reach_beside<D>(strips, groups_of_field_[f], mesh.cells_of_node()[plane.node], mesh.node(plane.node), plane.normal,
                                          mesh.node_size(plane.node) / 2);
       touched_[static_cast<std::size_t>(k)] = reach >= 0 ? 1 : 0;
     });

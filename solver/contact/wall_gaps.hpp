@@ -16,13 +16,13 @@ class WallGaps {
  public:
   /// Makes room for the walls of these conditions.  Collective.
   void begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const BoundaryConditions<D>& conditions,
-             const std::vector<std::vector<Index>>& bodies_of_field, std::span<VelocityField<D>> fields);
+             const std::vector<std::vector<Index>>& groups_of_field, std::span<VelocityField<D>> fields);
   /// Sets the open planes of the nodes of all fields.  Collective.
   void find(const Mesh<D>& mesh, const ParticleStrips<D>& strips, std::span<VelocityField<D>> fields);
 
  private:
   bool any_ = false;  ///< on some rank
-  std::vector<std::vector<Index>> bodies_of_field_;
+  std::vector<std::vector<Index>> groups_of_field_;
   std::vector<typename BoundaryConditions<D>::GapPlane> planes_;  ///< by node
   std::vector<std::uint8_t> touched_;                             ///< of one field at a time, by plane
   HaloExchange copies_;

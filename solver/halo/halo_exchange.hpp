@@ -31,7 +31,8 @@ enum class MessageTag : int {
   rigid_nodes = 16,
   rigid_touches = 17,
   wall_nodes = 18,
-  wall_touches = 19
+  wall_touches = 19,
+  sheet_nodes = 20
 };
 
 /// Selects the parts of a row to be sent: the whole row.

@@ -42,6 +42,8 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
     particles.viscous.assign(n, 0);
   if (wanted.pore && particles.pore.empty())
     particles.pore.assign(n, 0);
+  if (wanted.side && particles.side.empty())
+    particles.side.assign(n, 0);
 }
 
 template <int D>
@@ -58,14 +60,18 @@ void adopt_state(Model<D>& m)
   update_rows(m);
 }
 
-/// The numbers of the bodies of each velocity field.
+/// The groups of particles, see ParticleStrips, whose reach counts in each velocity field.  Nodes that no sheet parts have their mass in the
+/// field in front, so particles behind sheets count there too.
 template <int D>
-std::vector<std::vector<Index>> bodies_of_field(const Model<D>& m)
+std::vector<std::vector<Index>> groups_of_field(const Model<D>& m)
 {
-  std::vector<std::vector<Index>> bodies(static_cast<std::size_t>(m.problem.contacts.n_fields));
-  for (Index body = 0; body < m.n_bodies(); ++body)
-    bodies[m.problem.contacts.field_of(body)].push_back(body);
-  return bodies;
+  std::vector<std::vector<Index>> groups(m.problem.n_fields());
+  for (const bool behind : {false, true})
+    for (Index body = 0; body < m.n_bodies() && (!behind || m.problem.rigid.any_sheet()); ++body)
+      for (const bool of_field_behind : {false, true})
+        if (behind || !of_field_behind)
+          groups[m.problem.field_of(body, of_field_behind)].push_back(behind ? m.n_bodies() + body : body);
+  return groups;
 }
 
 template <int D>
@@ -80,7 +86,7 @@ void bind_boundary_conditions(Model<D>& m)
     for (Index node = 0; node < problem.mesh.n_nodes(); ++node)
       field.nodes.bound[static_cast<std::size_t>(node)] = state.boundary.binds(node) ? 1 : 0;
   }
-  work.walls.begin(problem.mesh, problem.subdomain, *problem.ranks, state.boundary, bodies_of_field(m), work.fields);
+  work.walls.begin(problem.mesh, problem.subdomain, *problem.ranks, state.boundary, groups_of_field(m), work.fields);
   problem.exits.closed.assign(static_cast<std::size_t>(problem.mesh.n_cells()), 0);
   for (const Facet facet : state.boundary.closed_facets(problem.mesh))
     problem.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
@@ -103,19 +109,21 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
                      .applied = problem.loads.any_on_particles(),
                      .volume_ratio = any_material([](const Material& material) { return material.averages_volume; }),
                      .viscous = any_material([](const Material& material) { return material.viscosity.has_value(); }),
-                     .pore = problem.water.any()};
+                     .pore = problem.water.any(),
+                     .side = problem.rigid.any_sheet()};
   fill_columns(problem.columns, state.particles);
   const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))
     alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.subdomain);
-  while (static_cast<Index>(work.fields.size()) < problem.contacts.n_fields)
+  while (work.fields.size() < problem.n_fields())
     m.add_field();
   transfer.prepare(problem);
   work.contact.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.contacts);
   work.cuts.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.cuts);
   work.sums.contacts.resize(problem.contacts.laws.size() + problem.cuts.size());
   state.contacts.resize(work.sums.contacts.size());
-  work.rigid.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.rigid, bodies_of_field(m));
+  work.sheets.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.own, problem.rigid, problem.fields_in_front());
+  work.rigid.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.rigid, groups_of_field(m));
   work.sums.rigid.resize(problem.rigid.bodies.size());
   work.carriers = TrackedIds(ids_of(problem.loads.on_particles));
   bind_boundary_conditions(m);
@@ -147,32 +155,35 @@ void find_forces(const Model<D>& m, Real time, const StripColumns<D>& columns, s
 
 namespace {
 
-/// Finds the bodies that average their volumes, by the groups that do it as one.  Collective.
+/// Finds the groups of particles that average their volumes, by those that do it as one.  Collective.
 template <int D>
 void find_averaged_bodies(Model<D>& m)
 {
   std::vector<AveragedBodies<D>>& all = m.work.averaged;
   const std::vector<Material>& materials = m.state.materials;
-  const auto group = [&](Index body) { return averages_with(materials[static_cast<std::size_t>(body)]); };
+  const auto with = [&](Index body) { return averages_with(materials[static_cast<std::size_t>(body)]); };
   for (AveragedBodies<D>& one : all)
-    one.bodies.clear();
+    one.groups.clear();
   std::size_t used = 0;
-  for (Index body = 0; body < m.n_bodies(); ++body) {
-    if (!materials[static_cast<std::size_t>(body)].averages_volume)
+  const Index n_groups = m.n_bodies() * (m.problem.rigid.any_sheet() ? 2 : 1);
+  for (Index group = 0; group < n_groups; ++group) {
+    const auto body_of = [&](Index one) { return one % m.n_bodies(); };
+    const auto field = [&](Index one) { return m.problem.field_of(body_of(one), one >= m.n_bodies()); };
+    if (!materials[static_cast<std::size_t>(body_of(group))].averages_volume)
       continue;
     const auto same = std::find_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(used), [&](const AveragedBodies<D>& one) {
-      return group(body) != none && group(one.bodies.front()) == group(body) &&
-             m.problem.contacts.field_of(one.bodies.front()) == m.problem.contacts.field_of(body);
+      const Index first = one.groups.front();
+      return with(body_of(group)) != none && with(body_of(first)) == with(body_of(group)) && field(first) == field(group);
     });
     if (same != all.begin() + static_cast<std::ptrdiff_t>(used)) {
-      same->bodies.push_back(body);
+      same->groups.push_back(group);
       continue;
     }
     if (used == all.size())
       all.push_back({{},
                      m.problem.subdomain.alone() ? NodePatchSums<D, 2>(m.problem.mesh)
                                                  : NodePatchSums<D, 2>(*m.problem.ranks, m.problem.mesh, m.problem.subdomain)});
-    all[used++].bodies.push_back(body);
+    all[used++].groups.push_back(group);
   }
   all.erase(all.begin() + static_cast<std::ptrdiff_t>(used), all.end());
 }

@@ -25,6 +25,7 @@ struct WantedColumns {
   bool volume_ratio = false;  ///< a law averages its volume
   bool viscous = false;       ///< a law has bulk viscosity
   bool pore = false;          ///< there is pore water
+  bool side = false;          ///< there are sheets
 };
 /// The parts of a scene other than bodies and their boundary conditions.
 template <int D>
@@ -47,6 +48,11 @@ struct Problem : SceneConditions<D> {
   Subdomain subdomain;                ///< part of the mesh on this rank
   OwnNodes own;
   WantedColumns columns;
+
+  /// Velocity fields of bodies in contact; with sheets there are as many again, behind the sheets.
+  std::size_t fields_in_front() const noexcept { return static_cast<std::size_t>(this->contacts.n_fields); }
+  std::size_t n_fields() const noexcept { return fields_in_front() * (this->rigid.any_sheet() ? 2 : 1); }
+  std::size_t field_of(Index body, bool behind) const noexcept { return this->contacts.field_of(body) + (behind ? fields_in_front() : 0); }
 
   explicit Problem(Mesh<D> m) : mesh(std::move(m)), locator(mesh), own(all_nodes(mesh)) {}
 };

@@ -29,10 +29,11 @@ struct Workspace {
   Migration<D> migration;
   ParticleErrors errors;
 
-  std::vector<VelocityField<D>> fields;  ///< one, unless bodies are in contact
+  std::vector<VelocityField<D>> fields;  ///< one, unless bodies are in contact or there are sheets
   ContactNodes<D> contact;               ///< nodes at which two fields touch
   CutNodes<D> cuts;                      ///< nodes of cuts and their twins
   WallGaps<D> walls;                     ///< where material touches walls with gaps
+  Sheets<D> sheets;                      ///< fields in front of and behind sheets
   RigidNodes<D> rigid;                   ///< nodes at which material touches rigid bodies
   StepSums<D> sums;                      ///< sums of the present step
   // Sums over the particles of each body in each block.

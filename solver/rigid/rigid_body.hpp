@@ -1,5 +1,6 @@
 #pragma once
 // Rigid bodies: what no step changes of them, and their motion.
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,9 @@ Vec<D> turned_arm(const Vec3& spin, const Vec<D>& arm) noexcept
     return {spin[1] * arm[2] - spin[2] * arm[1], spin[2] * arm[0] - spin[0] * arm[2], spin[0] * arm[1] - spin[1] * arm[0]};
 }
 
+/// What facets are: the surface of a solid, or a sheet without thickness.
+enum class FacetsOf : std::uint8_t { solid, sheet };
+
 /// The surface of a rigid body, about its centre of mass: a disk or ball of a radius, or facets.
 template <int D>
 class RigidShape {
@@ -30,7 +34,7 @@ class RigidShape {
   explicit RigidShape(Real radius) : surface_(Ball{radius}), radius_(radius) {}
   /// The centre of mass is the origin.  Contacts with other rigid bodies and walls are sought at points of the surface, of which there are
   /// eight or more over its radius.
-  explicit RigidShape(FacetSurface<D> facets) : surface_(std::move(facets))
+  explicit RigidShape(FacetSurface<D> facets, FacetsOf of = FacetsOf::solid) : surface_(std::move(facets)), of_(of)
   {
     for (const Vec<D>& corner : this->facets()->corners())
       radius_ = std::max(radius_, corner.norm());
@@ -40,10 +44,12 @@ class RigidShape {
   {
     if (const Ball* ball = std::get_if<Ball>(&surface_)) {
       const Real r = x.norm();
-      return {r - ball->radius, r > 0 ? Vec<D>(x / r) : Vec<D>(Vec<D>::Unit(D - 1))};
+      return {r - ball->radius, r > 0 ? Vec<D>(x / r) : Vec<D>(Vec<D>::Unit(D - 1)), false};
     }
     return facets()->distance(x);
   }
+  /// Whether it has material on both sides, that in front and that behind; see SideOfSheet.
+  bool is_sheet() const noexcept { return of_ == FacetsOf::sheet; }
   bool is_ball() const noexcept { return std::holds_alternative<Ball>(surface_); }
   const FacetSurface<D>* facets() const noexcept { return std::get_if<FacetSurface<D>>(&surface_); }
   Real radius() const noexcept { return radius_; }                          ///< of the ball around the centre that holds it [m]
@@ -54,6 +60,7 @@ class RigidShape {
     Real radius;
   };
   std::variant<Ball, FacetSurface<D>> surface_;
+  FacetsOf of_ = FacetsOf::solid;
   Real radius_ = 0;
   std::vector<Vec<D>> samples_;
 };
@@ -98,7 +105,7 @@ struct RigidState {
   SurfaceDistance<D> distance(const RigidShape<D>& shape, const Vec<D>& place) const
   {
     const SurfaceDistance<D> there = shape.distance(arm_in_body(place));
-    return {there.distance, in_scene(there.normal)};
+    return {there.distance, in_scene(there.normal), there.on_rim};
   }
   /// The tensor of inertia in the axes of the scene [kg m^2].
   Mat3 inertia(const RigidBody<D>& body) const noexcept { return turn * body.inertia * turn.transpose(); }
@@ -117,6 +124,10 @@ template <int D>
 struct RigidScene {
   std::vector<RigidBody<D>> bodies;
   std::vector<RigidWall<D>> walls;
+  bool any_sheet() const noexcept
+  {
+    return std::ranges::any_of(bodies, [](const RigidBody<D>& body) { return body.shape->is_sheet(); });
+  }
 };
 
 /// Begins a step: gravity [m/s^2] acts on free bodies over `kick` [s], others get their velocity of the time `mid` [s].

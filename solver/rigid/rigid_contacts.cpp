@@ -123,11 +123,12 @@ std::vector<RigidContact<D>> find_contacts(const RigidScene<D>& scene, std::span
       const Real near = reach(a) + reach(b), friction = std::sqrt(body.friction * other.friction);
       if ((states[a].x - states[b].x).norm() > shape.radius() + other.shape->radius() + near)
         continue;
+      // Sheets have no inside: their points are sought in solids, not the other way round.
       const auto to_b = [&](const Vec<D>& x) { return states[b].distance(*other.shape, x); };
       const auto to_a = [&](const Vec<D>& x) { return states[a].distance(shape, x); };
-      if (!other.shape->is_ball() || shape.is_ball())
+      if (!other.shape->is_sheet() && (!other.shape->is_ball() || shape.is_ball() || shape.is_sheet()))
         take(points_near<D>(shape, states[a], near, to_b), a, static_cast<Index>(b), friction, 1);
-      if (!shape.is_ball())
+      if (!shape.is_sheet() && (!shape.is_ball() || other.shape->is_sheet()))
         take(points_near<D>(*other.shape, states[b], near, to_a), a, static_cast<Index>(b), friction, -1);
     }
   }

@@ -13,12 +13,12 @@ constexpr Real nearness = 3;
 
 template <int D>
 void RigidNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const RigidScene<D>& scene,
-                          const std::vector<std::vector<Index>>& bodies_of_field)
+                          const std::vector<std::vector<Index>>& groups_of_field)
 {
   n_bodies_ = scene.bodies.size();
   if (!any())
     return;
-  bodies_of_field_ = bodies_of_field;
+  groups_of_field_ = groups_of_field;
   const auto n_nodes = static_cast<std::size_t>(mesh.n_nodes()), n_cells = static_cast<std::size_t>(mesh.n_cells());
   candidate_.assign(n_nodes, 0);
   touch_.assign(n_nodes, {});
@@ -30,21 +30,21 @@ void RigidNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Commu
 }
 
 template <int D>
-void RigidNodes<D>::find_candidates(const Place& at, Index field, const Nodes<D>& nodes)
+void RigidNodes<D>::find_candidates(const Place& at, const Nodes<D>& nodes)
 {
   for (const Index n : candidates_)
     candidate_[static_cast<std::size_t>(n)] = 0;
   candidates_.clear();
   nodes.in_use.for_each_ascending([&](Index n) {
     const auto i = static_cast<std::size_t>(n);
-    if (!at.own.has(n) || nodes.active[i] == 0)
+    if (!at.own.has(n) || nodes.active[i] == 0 || !at.acts_on(n))
       return;
     const Real near = nearness * at.mesh.node_size(n), reach = at.shape.radius() + near;
-    if ((at.mesh.node(n) - at.state.x).squaredNorm() > reach * reach || at.state.distance(at.shape, at.mesh.node(n)).distance > near)
+    if ((at.mesh.node(n) - at.state.x).squaredNorm() > reach * reach || at.distance(at.mesh.node(n)).distance > near)
       return;
     candidate_[i] = 1;
     candidates_.push_back(n);
-    nodes_.push_back({.rigid = at.rigid, .field = field, .node = n, .touch = {}});
+    nodes_.push_back({.rigid = at.rigid, .field = static_cast<Index>(at.field), .node = n, .touch = {}});
   });
   copies_.send(candidate_, OfMarked{itself, candidate_});
   copies_.take(candidate_, OfMarked{itself, candidate_});
@@ -55,7 +55,7 @@ void RigidNodes<D>::find_candidates(const Place& at, Index field, const Nodes<D>
 }
 
 template <int D>
-void RigidNodes<D>::find_touching_particles(const Place& at, Index field)
+void RigidNodes<D>::find_touching_particles(const Place& at)
 {
   for (const Index c : marked_)
     place_of_cell_[static_cast<std::size_t>(c)] = none;
@@ -72,10 +72,13 @@ void RigidNodes<D>::find_touching_particles(const Place& at, Index field)
   parallel_for(static_cast<Index>(marked_.size()), [&](Index k) {
     auto& touching = touching_[static_cast<std::size_t>(k)];
     touching.clear();
-    for_each_particle_in<D>(at.strips, bodies_of_field_[static_cast<std::size_t>(field)], marked_[static_cast<std::size_t>(k)],
+    for_each_particle_in<D>(at.strips, groups_of_field_[at.field], marked_[static_cast<std::size_t>(k)],
                             [&](const StripColumns<D>& columns, std::size_t p) {
+                              if (at.shape.is_sheet())
+                                if (const SideOfSheet side(columns.side.of(p)); !side.kept || side.behind != at.sheets.is_behind(at.field))
+                                  return;
                               const Vec<D> x = columns.x.of(p);
-                              const SurfaceDistance<D> to = at.state.distance(at.shape, x);
+                              const SurfaceDistance<D> to = at.distance(x);
                               const Real gap = to.distance - half_width<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
                               if (gap <= 0)
                                 touching.push_back({{gap, to.normal, x - to.distance * to.normal}, x});
@@ -108,18 +111,18 @@ void RigidNodes<D>::find_deepest(const Place& at, std::span<RigidNode<D>> found)
 
 template <int D>
 void RigidNodes<D>::find(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips, const RigidScene<D>& scene,
-                         std::span<const RigidState<D>> states, std::span<const VelocityField<D>> fields)
+                         std::span<const RigidState<D>> states, const Sheets<D>& sheets, std::span<const VelocityField<D>> fields)
 {
   if (!any())
     return;
   nodes_.clear();
   for (std::size_t r = 0; r < scene.bodies.size(); ++r)
     for (std::size_t f = 0; f < fields.size(); ++f) {
-      const Place at{mesh, own, strips, *scene.bodies[r].shape, states[r], static_cast<Index>(r)};
+      const Place at{mesh, own, strips, *scene.bodies[r].shape, states[r], static_cast<Index>(r), sheets, f};
       const std::size_t before = nodes_.size();
-      find_candidates(at, static_cast<Index>(f), fields[f].nodes);
+      find_candidates(at, fields[f].nodes);
       const std::span<RigidNode<D>> found = std::span(nodes_).subspan(before);
-      find_touching_particles(at, static_cast<Index>(f));
+      find_touching_particles(at);
       find_deepest(at, found);
     }
   std::erase_if(nodes_, [](const RigidNode<D>& one) { return !one.touch.is_seen(); });
@@ -129,7 +132,7 @@ void RigidNodes<D>::find(const Mesh<D>& mesh, const OwnNodes& own, const Particl
   template void RigidNodes<D>::begin(const Mesh<D>&, const Subdomain&, Communicator&, const RigidScene<D>&,          \
                                      const std::vector<std::vector<Index>>&);                                        \
   template void RigidNodes<D>::find(const Mesh<D>&, const OwnNodes&, const ParticleStrips<D>&, const RigidScene<D>&, \
-                                    std::span<const RigidState<D>>, std::span<const VelocityField<D>>);
+                                    std::span<const RigidState<D>>, const Sheets<D>&, std::span<const VelocityField<D>>);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)
 #undef TALUS_INSTANTIATE

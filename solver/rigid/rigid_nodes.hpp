@@ -7,7 +7,7 @@
 
 #include "solver/boundary/velocity_field.hpp"
 #include "solver/halo/halo_exchange.hpp"
-#include "solver/rigid/rigid_body.hpp"
+#include "solver/rigid/sheets.hpp"
 #include "solver/strips/particle_strips.hpp"
 
 namespace talus {
@@ -46,7 +46,8 @@ struct RigidNode {
 ///
 /// **Where.**  A particle touches a body if the distance of its centre from the surface is at most its half width along the normal there,
 /// |F^T n| V0^(1/D) / 2.  A node touches if a particle within two rings of cells does whose normal passes it by half a mean edge at most.
-/// Normal and place of contact are those of the particle that reaches deepest.
+/// Normal and place of contact are those of the particle that reaches deepest.  A sheet acts on the nodes that it parts: on each field from
+/// the side of its particles, wherever their centres are.
 ///
 /// **Impulse.**  Where both approach, the material at the node gets the normal velocity of the body at the place of contact (a plastic
 /// impact), and the tangential one unless friction carries less.  The velocity of a free body after the step is the solution of its
@@ -57,12 +58,12 @@ class RigidNodes {
  public:
   /// Makes room.  Collective.
   void begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const RigidScene<D>& scene,
-             const std::vector<std::vector<Index>>& bodies_of_field);
+             const std::vector<std::vector<Index>>& groups_of_field);
   bool any() const noexcept { return n_bodies_ > 0; }
 
   /// Finds the nodes that touch.  Collective.
   void find(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips, const RigidScene<D>& scene,
-            std::span<const RigidState<D>> states, std::span<const VelocityField<D>> fields);
+            std::span<const RigidState<D>> states, const Sheets<D>& sheets, std::span<const VelocityField<D>> fields);
   /// Exchanges impulses between the new velocities of nodes and bodies.  Boundary conditions act on nodes that change.  Collective.
   void act(const Kick& kick, Communicator& ranks, const RigidScene<D>& scene, BoundaryConditions<D>& conditions,
            std::span<RigidState<D>> states, std::span<VelocityField<D>> fields, ExactSums<BoundaryWork>& work);
@@ -82,13 +83,24 @@ class RigidNodes {
     const RigidShape<D>& shape;
     const RigidState<D>& state;
     Index rigid;
+    const Sheets<D>& sheets;
+    std::size_t field;
+    bool acts_on(Index node) const noexcept
+    {
+      return !shape.is_sheet() || (sheets.nearest(node) == rigid && sheets.is_parted(field, node));
+    }
+    SurfaceDistance<D> distance(const Vec<D>& x) const
+    {
+      const SurfaceDistance<D> to = state.distance(shape, x);
+      return shape.is_sheet() && sheets.is_behind(field) ? SurfaceDistance<D>{-to.distance, -to.normal, to.on_rim} : to;
+    }
   };
-  void find_candidates(const Place& at, Index field, const Nodes<D>& nodes);
-  void find_touching_particles(const Place& at, Index field);
+  void find_candidates(const Place& at, const Nodes<D>& nodes);
+  void find_touching_particles(const Place& at);
   void find_deepest(const Place& at, std::span<RigidNode<D>> found);
 
   std::size_t n_bodies_ = 0;
-  std::vector<std::vector<Index>> bodies_of_field_;
+  std::vector<std::vector<Index>> groups_of_field_;
   std::vector<RigidNode<D>> nodes_;  ///< own ones, by rigid body, field and node
   HaloExchange copies_;
   ReturnToOwners<Touch<D>> back_;

@@ -16,13 +16,13 @@ namespace talus {
 /// every cell.
 template <int D>
 struct AveragedBodies {
-  std::vector<Index> bodies;
+  std::vector<Index> groups;  ///< of particles, see ParticleStrips
   NodePatchSums<D, 2> sums;
 
   /// Sums the particles of a block, whose column `averaged` holds V_p; then sums.assemble().
   void sum_block(const Mesh<D>& mesh, const ParticleStrips<D>& strips, Index block)
   {
-    sums.sum_block(strips, bodies, block, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
+    sums.sum_block(strips, groups, block, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
       for_each_shape(mesh, c, run, [&](std::size_t p, const Pack& shape) {
         corners[0] += shape * run.columns.averaged.of(p);
         corners[1] += shape * run.columns.volume0.of(p);
@@ -32,7 +32,7 @@ struct AveragedBodies {
   /// Sets `averaged` of the particles of a block to their averaged ratio.
   void average_block(const Mesh<D>& mesh, const ParticleStrips<D>& strips, Index block) const
   {
-    for_each_cell_of(strips, std::span<const Index>(bodies), block, [&](Index c, auto&& runs) {
+    for_each_cell_of(strips, std::span<const Index>(groups), block, [&](Index c, auto&& runs) {
       std::array<Real, D + 1> ratio;
       for (std::size_t a = 0; a <= D; ++a) {
         const auto& [volume, volume0] = sums[mesh.cell(c)[a]].sum;

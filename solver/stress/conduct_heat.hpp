@@ -16,13 +16,13 @@ struct HeatSums {
   {}
 };
 
-/// One explicit step of  rho c dT/dt = div(k grad T)  on the linear shape functions of the mesh, insulated at every surface and between bodies:
+/// One explicit step of  rho c dT/dt = div(k grad T)  on the linear shape functions of the mesh, insulated at every surface and between groups of particles:
 ///     C_v = sum_p m_p c N_v,   T_v = sum_p m_p c T_p N_v / C_v,   H_v = -sum_p V_p k (grad T)_p . grad N_v,
 ///     T_p <- T_p + dt sum_v N_v H_v / C_v
 /// at the places of the particles after their move.  Rates are interpolated, not temperatures, so that nothing is smeared at rest; the
 /// sum of m_p c T_p is kept to round-off.  Nothing happens under a law without temperature or without conductivity.
 template <int D>
-void conduct_heat(const Mesh<D>& mesh, const ConstitutiveLaw& law, const ParticleStrips<D>& strips, Index body, Real dt, HeatSums<D>& sums)
+void conduct_heat(const Mesh<D>& mesh, const ConstitutiveLaw& law, const ParticleStrips<D>& strips, Index group, Real dt, HeatSums<D>& sums)
 {
   const std::optional<HeatConduction> heat = law.heat();
   if (!heat)
@@ -31,7 +31,7 @@ void conduct_heat(const Mesh<D>& mesh, const ConstitutiveLaw& law, const Particl
   const auto temperature = [&](const ParticlesInCell<D>& run, std::size_t p) -> Real& {
     return run.history.component(heat->temperature)[p];
   };
-  const std::span<const Index> only(&body, 1);
+  const std::span<const Index> only(&group, 1);
   sums.content.gather(strips, only, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
     for_each_shape(mesh, c, run, [&](std::size_t p, const Pack& shape) {
       const Pack capacity = run.columns.mass.of(p) * specific_heat * shape;

@@ -100,17 +100,17 @@ class NodePatchSums {
     copies_ = copies_of_nodes(ranks, subdomain, MessageTag::sums, nodes_read(subdomain, blocks_));
   }
 
-  /// Clears the rows of a block, then add(cell, its particles, CornerPacks<K>) for every cell that holds particles of the bodies, which are
+  /// Clears the rows of a block, then add(cell, its particles, CornerPacks<K>) for every cell that holds particles of the groups, which are
   /// treated as one: `add` is called for each body that has particles in the cell, one after the other, and the corners keep what was added
   /// before.  So the sums are bitwise those of one body whose particles have the same order in each cell.
   template <class Add>
-  void sum_block(const ParticleStrips<D>& strips, std::span<const Index> bodies, Index block, Add&& add)
+  void sum_block(const ParticleStrips<D>& strips, std::span<const Index> groups, Index block, Add&& add)
   {
     const auto rows = blocks_.rows(block);
     if (blocks_.occupied[static_cast<std::size_t>(block)] != 0)  // those of other blocks are clear
       std::fill(rows.begin(), rows.end(), Row{});
     bool occupied = false;
-    for_each_cell_of(strips, bodies, block, [&](Index c, auto&& runs) {
+    for_each_cell_of(strips, groups, block, [&](Index c, auto&& runs) {
       CornerPacks<K> corners{};
       runs([&](const ParticlesInCell<D>& run) { add(c, run, corners); });
       for (std::size_t a = 0; a <= D; ++a)
@@ -128,10 +128,10 @@ class NodePatchSums {
   }
   /// All of it.
   template <class Add>
-  void gather(const ParticleStrips<D>& strips, std::span<const Index> bodies, Add&& add)
+  void gather(const ParticleStrips<D>& strips, std::span<const Index> groups, Add&& add)
   {
     for_each_own_block(
-        halo_, [&](Index block) { sum_block(strips, bodies, block, add); }, [&] { halo_.template send_rows<Whole>(blocks_); });
+        halo_, [&](Index block) { sum_block(strips, groups, block, add); }, [&] { halo_.template send_rows<Whole>(blocks_); });
     add_rows();
   }
 

@@ -27,9 +27,11 @@ void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripCol
 }
 
 template <int D>
-void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::vector<Arrival>& arrivals_within)
+void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key,
+                                   std::array<std::vector<Arrival>, 2>& within)
 {
-  arrivals_within.clear();
+  for (std::vector<Arrival>& of_side : within)
+    of_side.clear();
   Leavers& leavers = block_[key].leaving;
   for (std::size_t i = 0; i < leavers.all.size(); ++i) {
     const Real* const record = leavers.numbers.data() + i * record_width(key);
@@ -40,7 +42,7 @@ void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locato
     leaver.to = locator(mesh, x, leaver.to).value_or(none);  // also nothing for a position that is not finite
     leaver.is_summed = leaver.to != none && leaver.to / block_cells == leaver.cell / block_cells;
     if (leaver.is_summed)
-      arrivals_within.push_back({leaver.to, StripIds::id_of(record[layout_.step_arrays().id]), record, true});
+      within[is_behind(new_group(body(key), record)) ? 1 : 0].push_back({leaver.to, StripIds::id_of(record[layout_.step_arrays().id]), record, true});
   }
 }
 
@@ -86,17 +88,24 @@ void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& m
     std::swap(block.left, block.leaving);
     block.leaving.clear();
     const Index of_body = body(key);
-    const std::span<const Real> numbers(block.left.numbers);
+    const std::span<Real> numbers(block.left.numbers);
     for (std::size_t i = 0; i < block.left.all.size(); ++i) {
       const Index cell = block.left.all[i].to;
       const auto record = numbers.subspan(i * record_width(key), record_width(key));
       if (cell == none)
         continue;
+      const Index to_group = new_group(of_body, record.data());
+      if (sides_ > 1) {
+        Real& number = record[to_size(layout_.step_arrays().side)];
+        SideOfSheet side(number);
+        side.changes = false;
+        number = side.number();
+      }
       if (!subdomain.alone() && !subdomain.owns_cell(cell))
         migration.add({of_body, subdomain.whole_cell(cell)}, cell / block_cells, record);
       else
         unsorted_.push_back(
-            {key_of(of_body, cell),
+            {key_of(to_group, cell),
              {cell, StripIds::id_of(record[to_size(layout_.step_arrays().id)]), record.data(), block.left.all[i].is_summed}});
     }
   }
@@ -105,7 +114,7 @@ void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& m
          migration.exchange([&](Index b) { return layout_.width() + layout_.gradients() + history_width(b); })) {
       const Index cell = subdomain.local_cell(one.head.whole_cell);
       unsorted_.push_back(
-          {key_of(one.head.body, cell), {cell, StripIds::id_of(one.numbers[layout_.step_arrays().id]), one.numbers, false}});
+          {key_of(new_group(one.head.body, one.numbers), cell), {cell, StripIds::id_of(one.numbers[layout_.step_arrays().id]), one.numbers, false}});
     }
   sort_arrivals();
 }
@@ -147,12 +156,12 @@ void ParticleStrips<D>::sort_arrivals()
 }
 
 template void ParticleStrips<2>::add_leaver(std::size_t, Index, const StripColumns<2>&, Index, Index, Index);
-template void ParticleStrips<2>::find_cells(const Mesh<2>&, const Locator<2>&, std::size_t, std::vector<Arrival>&);
+template void ParticleStrips<2>::find_cells(const Mesh<2>&, const Locator<2>&, std::size_t, std::array<std::vector<Arrival>, 2>&);
 template void ParticleStrips<2>::take_exits(const Mesh<2>&, const Locator<2>&, const Exits&, const std::vector<Material>&, const SetForces&,
                                             StepSums<2>&, ParticleErrors&);
 template void ParticleStrips<2>::send_leavers(const Subdomain&, Migration<2>&);
 template void ParticleStrips<3>::add_leaver(std::size_t, Index, const StripColumns<3>&, Index, Index, Index);
-template void ParticleStrips<3>::find_cells(const Mesh<3>&, const Locator<3>&, std::size_t, std::vector<Arrival>&);
+template void ParticleStrips<3>::find_cells(const Mesh<3>&, const Locator<3>&, std::size_t, std::array<std::vector<Arrival>, 2>&);
 template void ParticleStrips<3>::take_exits(const Mesh<3>&, const Locator<3>&, const Exits&, const std::vector<Material>&, const SetForces&,
                                             StepSums<3>&, ParticleErrors&);
 template void ParticleStrips<3>::send_leavers(const Subdomain&, Migration<3>&);

@@ -16,11 +16,13 @@
 #include "solver/state/cell_order.hpp"
 #include "solver/state/sums.hpp"
 #include "solver/strips/rearrangement.hpp"
+#include "solver/strips/side_of_sheet.hpp"
 #include "solver/strips/strip.hpp"
 
 namespace talus {
 
-/// The particles between load() and store().  A key is the number of a body and a block of cells, as in CellOrder.
+/// The particles between load() and store().  A key is the number of a group of particles and a block of cells.  Each body is a group, with
+/// the number of the body; where sheets part velocities, groups of the particles of each body behind sheets follow.
 ///
 /// A step moves the particles, and lists those that have left their cell.  They stay where they are in the strip until the next step has
 /// found their new cells: order() then puts them there.  So the strips between two steps follow from the particles alone, and a run that
@@ -41,14 +43,32 @@ class ParticleStrips {
   /// Empties the columns and histories, as load() does.
   static void clear(std::vector<Material>& materials, Particles<D>& particles, CellOrder& order);
 
-  std::size_t key(Index body, Index block) const noexcept
+  std::size_t key(Index group, Index block) const noexcept
   {
-    return static_cast<std::size_t>(body) * static_cast<std::size_t>(blocks_) + static_cast<std::size_t>(block);
+    return static_cast<std::size_t>(group) * static_cast<std::size_t>(blocks_) + static_cast<std::size_t>(block);
   }
   std::size_t keys() const noexcept { return block_.size(); }
   Index blocks() const noexcept { return blocks_; }
-  /// The body of a key.
-  Index body(std::size_t key) const noexcept { return static_cast<Index>(key / to_size(blocks_)); }
+  /// Groups; all of them, those in front of sheets being bodies.
+  Index groups() const noexcept { return sides_ * bodies(); }
+  Index group(std::size_t key) const noexcept { return static_cast<Index>(key / to_size(blocks_)); }
+  Index group_of(Index body, bool behind) const noexcept { return behind ? bodies() + body : body; }
+  bool is_behind(Index group) const noexcept { return group >= bodies(); }
+  /// The body of a group, or of a key.
+  Index body_of(Index group) const noexcept { return is_behind(group) ? group - bodies() : group; }
+  Index body(std::size_t key) const noexcept { return body_of(group(key)); }
+  /// The group that a particle that leaves goes to; its numbers are those of a record, see Arrival.
+  Index new_group(Index body, const Real* record) const noexcept
+  {
+    return sides_ == 1 ? body : group_of(body, SideOfSheet(record[layout_.step_arrays().side]).behind);
+  }
+  /// Calls f(key) for each group of a body in a block, the one in front first.
+  template <class F>
+  void for_each_key_of(Index body, Index block, F&& f) const
+  {
+    for (Index side = 0; side < sides_; ++side)
+      f(key(group_of(body, side != 0), block));
+  }
   Index size() const noexcept;
   /// The bytes that a step must read and write of the particles: each number that changes twice, mass, initial volume, id and start
   /// position once.
@@ -56,7 +76,7 @@ class ParticleStrips {
   /// The memory of the strips [B].
   std::size_t bytes() const noexcept { return memory_.size() * sizeof(Real) + pool_->bytes(); }
 
-  /// The strips of a body in a block; none where it has no particles.
+  /// The strips of a group in a block; none where it has no particles.
   std::span<Strip> strips(std::size_t key) noexcept { return block_[key].strips; }
   std::span<const Strip> strips(std::size_t key) const noexcept { return block_[key].strips; }
   /// Without gradients, unless strips keep them or those that were loaded still hold.
@@ -95,8 +115,9 @@ class ParticleStrips {
   /// Lists particle i of a strip, in this cell, as one that leaves, probably to cell `to`; to be called in the order of strips and
   /// positions.  `columns` are those of the strip, with gradients.
   void add_leaver(std::size_t key, Index strip, const StripColumns<D>& columns, Index i, Index cell, Index to);
-  /// Finds the new cells of the particles of a key that leave, once all are listed, and lists those that stay in the block.
-  void find_cells(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::vector<Arrival>& within);
+  /// Finds the new cells of the particles of a key that leave, once all are listed, and lists those that stay in the block, for each group of
+  /// the body that they come to.
+  void find_cells(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::array<std::vector<Arrival>, 2>& within);
   /// The particles of a key, and how many they will be once its strips are in order.
   Index size(std::size_t key) const noexcept;
   Index size_in_order(std::size_t key) const noexcept;
@@ -137,7 +158,8 @@ class ParticleStrips {
     return std::span(arrivals_).subspan(first, to_size(block.first_coming[s + 1] - block.first_coming[s]));
   }
 
-  std::size_t key_of(Index body, Index cell) const noexcept { return key(body, cell / block_cells); }
+  Index bodies() const noexcept { return static_cast<Index>(history_width_.size()); }
+  std::size_t key_of(Index group, Index cell) const noexcept { return key(group, cell / block_cells); }
   /// Numbers of a record: those of the layout, gradients, those of the law.
   std::size_t record_width(std::size_t key) const noexcept
   {
@@ -152,7 +174,7 @@ class ParticleStrips {
 
   StripLayout layout_;
   std::vector<Index> history_width_;
-  Index blocks_ = 0;
+  Index blocks_ = 0, sides_ = 1;
   std::vector<BlockOfStrips> block_;  ///< one per key
   Rows<Real> memory_;                 ///< of the strips at the beginning
   Rows<Real> loaded_gradients_;

@@ -25,7 +25,7 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore;
+  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, side;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place.
@@ -66,7 +66,8 @@ class StripLayout {
                .volume_ratio = at("volume_ratio"),
                .averaged = at("volume_ratio") == none ? none : width_++,
                .viscous = at("viscous_pressure"),
-               .pore = at("pore_pressure")};
+               .pore = at("pore_pressure"),
+               .side = at("side")};
   }
   static constexpr std::string_view gradient = "velocity_gradient", affine = "affine";
   /// Arrays of a strip, without gradients and those of its law.
@@ -154,7 +155,7 @@ struct StripColumns {
   StripColumn<Mat<D>> L{}, C{};  ///< in the strip only where gradients are kept; C is empty where the affine field is L
   StripColumn<Mat3> F{};
   StripColumn<Sym3> stress{};
-  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{};
+  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{}, side{};
   StripColumn<Vec<D>> applied{};                 ///< forces of loads at the present positions [N]
   StripColumn<Real> volume_ratio{}, averaged{};  ///< of averaged volumes: see StressStrip; `averaged` lasts for a step
   StripIds id{};

@@ -26,6 +26,17 @@ void write_row(const Real* first, std::size_t stride, Column& column, std::size_
     std::memcpy(numbers + c, first + static_cast<std::size_t>(c) * stride, sizeof(Real));
 }
 
+/// The rows of each key in front of sheets, then of each behind them.
+template <int D>
+std::vector<std::vector<Index>> rows_by_side(const Particles<D>& particles, const CellOrder& sorted)
+{
+  std::vector<std::vector<Index>> rows(2 * sorted.keys());
+  for (std::size_t key = 0; key < sorted.keys(); ++key)
+    for (const Index row : sorted.rows(key))
+      rows[SideOfSheet(particles.side[to_size(row)]).is_stored_behind() ? sorted.keys() + key : key].push_back(row);
+  return rows;
+}
+
 }  // namespace
 
 template <int D>
@@ -38,16 +49,19 @@ void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, bool keep_gradi
   for (const Material& material : materials)
     history_width_.push_back(material.history.width());
   blocks_ = sorted.blocks;
+  sides_ = layout_.step_arrays().side == none ? 1 : 2;
 
-  block_ = std::vector<BlockOfStrips>(sorted.keys());
+  block_ = std::vector<BlockOfStrips>(to_size(sides_) * sorted.keys());
+  const std::vector<std::vector<Index>> on_side = sides_ == 1 ? std::vector<std::vector<Index>>() : rows_by_side(particles, sorted);
+  const auto rows_of = [&](std::size_t key) { return sides_ == 1 ? sorted.rows(key) : std::span<const Index>(on_side[key]); };
   std::size_t numbers = 0, gradients = 0;
   for (std::size_t key = 0; key < block_.size(); ++key) {
-    if (sorted.rows(key).empty())
+    if (rows_of(key).empty())
       continue;
     std::vector<Strip>& strips = block_[key].strips;
     strips.resize(to_size(strips_in_block));
     const Index first = first_cell(key, 0);
-    for (const Index row : sorted.rows(key)) {
+    for (const Index row : rows_of(key)) {
       const Index cell = particles.cell[to_size(row)] - first;
       ++strips[to_size(cell / strip_cells)].count[to_size(cell % strip_cells)];
     }
@@ -73,7 +87,7 @@ void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, bool keep_gradi
     }
 
   parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
-    const auto rows = sorted.rows(to_size(k));
+    const auto rows = rows_of(to_size(k));
     Material& material = materials[to_size(body(to_size(k)))];
     std::size_t first = 0;
     for (Strip& strip : block_[to_size(k)].strips) {
@@ -117,13 +131,10 @@ template <int D>
 void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& sorted,
                               const FindGradients& find_gradients) const
 {
-  sorted.first.assign(block_.size() + 1, 0);
-  for (std::size_t key = 0; key < block_.size(); ++key) {
-    Index n = 0;
-    for (const Strip& strip : block_[key].strips)
-      n += strip.n;
-    sorted.first[key + 1] = sorted.first[key] + n;
-  }
+  const std::size_t keys_in_front = block_.size() / to_size(sides_);
+  sorted.first.assign(keys_in_front + 1, 0);
+  for (std::size_t key = 0; key < keys_in_front; ++key)
+    sorted.first[key + 1] = sorted.first[key] + size(key) + (sides_ > 1 ? size(keys_in_front + key) : 0);
   sorted.blocks = blocks_;
   const auto n = to_size(sorted.first.back());
   sorted.row.resize(n);
@@ -141,7 +152,9 @@ void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& 
   }
   parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
     Material& material = materials[to_size(body(to_size(k)))];
-    auto first = to_size(sorted.first[to_size(k)]);
+    const bool behind = to_size(k) >= keys_in_front;
+    const std::size_t in_front = to_size(k) - (behind ? keys_in_front : 0);
+    auto first = to_size(sorted.first[in_front] + (behind ? size(in_front) : 0));
     for (std::size_t s = 0; s < block_[to_size(k)].strips.size(); ++s) {
       const Strip& strip = block_[to_size(k)].strips[s];
       std::size_t at_column = 0;

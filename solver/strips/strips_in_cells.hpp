@@ -1,5 +1,5 @@
 #pragma once
-// Loops over the particles of a cell, of one or several bodies.
+// Loops over the particles of a cell, of one or several groups.
 #include <numeric>
 #include <span>
 
@@ -15,15 +15,15 @@ struct ParticlesInCell {
   std::size_t begin, end;
 };
 
-/// Calls f(cell, runs) for each cell of a block that contains particles of the bodies, ascending; runs(g) calls g(ParticlesInCell) for each
-/// of these bodies that has some there, in the order of `bodies`.  Particles that a step has moved are in the cell that they come from.
+/// Calls f(cell, runs) for each cell of a block that contains particles of the groups, ascending; runs(g) calls g(ParticlesInCell) for each
+/// of these groups that has some there, in the order of `groups`.  Particles that a step has moved are in the cell that they come from.
 template <int D, class F>
-void for_each_cell_of(const ParticleStrips<D>& strips, std::span<const Index> bodies, Index block, F&& f)
+void for_each_cell_of(const ParticleStrips<D>& strips, std::span<const Index> groups, Index block, F&& f)
 {
   for (Index s = 0; s < strips_in_block; ++s) {
     const auto for_each_strip = [&](auto&& g) {
-      for (const Index body : bodies)
-        if (const auto all = strips.strips(strips.key(body, block)); !all.empty() && all[to_size(s)].n > 0)
+      for (const Index group : groups)
+        if (const auto all = strips.strips(strips.key(group, block)); !all.empty() && all[to_size(s)].n > 0)
           g(all[to_size(s)]);
     };
     for (Index c = 0; c < strip_cells; ++c) {

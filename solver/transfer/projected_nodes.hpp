@@ -105,17 +105,25 @@ void for_each_seen_hat(const NodesInUse& in_use, ProjectedNodes<D>& projected, A
   }
 }
 
-/// Replaces the accelerations of the unknowns by the part that acts on particles, M^-1 S^T m S a.  S has almost no response to checkerboard
-/// modes of the unknowns: what remains of them moves no particle and must not count in the criterion of equilibrium.  arrive() receives
-/// accelerations of nodes of other ranks.
+/// The accelerations S a of the linear shape functions that particles use, from those of the unknowns.  arrive() receives accelerations of
+/// nodes of other ranks.
 template <int D, class Arrive>
-void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own, const NodesInUse& in_use, Arrive&& arrive,
-                         ProjectedNodes<D>& projected, std::vector<Vec<D>>& a)
+void project_acceleration(const NodeOperators<D>& operators, const NodesInUse& in_use, Arrive&& arrive, ProjectedNodes<D>& projected,
+                          const std::vector<Vec<D>>& a)
 {
   for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>& projected_node) {
     projected_node.change.setZero();
     operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) { projected_node.change += S * a[static_cast<std::size_t>(v)]; });
   });
+}
+
+/// Then replaces the accelerations of the unknowns by the part that acts on particles, M^-1 S^T m S a.  S has almost no response to
+/// checkerboard modes of the unknowns: what remains of them moves no particle and must not count in the criterion of equilibrium.
+/// for_each_part(v, f) calls f for the projected nodes of each field whose mass node v has.
+template <int D, class ForEachPart>
+void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own, const NodesInUse& in_use, ForEachPart&& for_each_part,
+                         std::vector<Vec<D>>& a)
+{
   in_use.for_each([&](Index v) {
     Real mass = 0;
     Vec<D> sum = Vec<D>::Zero();
@@ -123,10 +131,12 @@ void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own,
       a[static_cast<std::size_t>(v)] = sum;
       return;
     }
-    operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
-      const Real share = S * projected.sum[static_cast<std::size_t>(n)].mass;
-      mass += share;
-      sum += share * projected.motion[static_cast<std::size_t>(n)].change;
+    for_each_part(v, [&](const ProjectedNodes<D>& projected) {
+      operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
+        const Real share = S * projected.sum[static_cast<std::size_t>(n)].mass;
+        mass += share;
+        sum += share * projected.motion[static_cast<std::size_t>(n)].change;
+      });
     });
     a[static_cast<std::size_t>(v)] = mass > 0 ? Vec<D>(sum / mass) : Vec<D>(Vec<D>::Zero());
   });

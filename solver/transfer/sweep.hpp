@@ -18,6 +18,9 @@ struct SweepParts {
   bool deposits = false;  ///< sums for the next step
 };
 
+/// Whether particles have the sides of sheets of the present places, or of those before the step.
+enum class SidesAre : std::uint8_t { known, old };
+
 /// Sweeps over the blocks of a model.  Lives on the stack of a thread, for one block.
 template <int D, Kernel<D> K>
 class BlockSweep {
@@ -36,7 +39,7 @@ class BlockSweep {
   {
     clear_sums(true);
     for_each_strip({.deposits = true}, [&](std::size_t key, Index number, const StripColumns<D>& columns) {
-      deposit(key, number, columns, m_.state.clock.time);
+      deposit(key, number, columns, m_.state.clock.time, SidesAre::known);
     });
     add_arrivals_within();
   }
@@ -54,7 +57,7 @@ class BlockSweep {
       if (parts.updates)
         update(key, number, columns, dt);
       if (parts.deposits)
-        deposit(key, number, columns, m_.state.clock.time + dt);
+        deposit(key, number, columns, m_.state.clock.time + dt, SidesAre::old);
     });
     if (parts.deposits)
       add_arrivals_within();
@@ -78,11 +81,11 @@ class BlockSweep {
   /// Adds the particles that come to the block from others.
   void add_arrivals()
   {
-    for (Index body = 0; body < m_.n_bodies(); ++body) {
-      const auto all = strips_.arriving(strips_.key(body, block_));
+    for (Index group = 0; group < strips_.groups(); ++group) {
+      const auto all = strips_.arriving(strips_.key(group, block_));
       scratch_.arrivals.clear();
       std::copy_if(all.begin(), all.end(), std::back_inserter(scratch_.arrivals), [](const Arrival& one) { return !one.is_summed; });
-      add_arrivals(body, scratch_.arrivals);
+      add_arrivals(group, scratch_.arrivals);
     }
   }
 
@@ -98,9 +101,9 @@ class BlockSweep {
   {
     for (KernelRows<D, K>& of : fields_) {
       bool occupied = false;
-      for (Index body = 0; body < m_.n_bodies(); ++body)
-        if (m_.problem.contacts.field_of(body) == of.field) {
-          const std::size_t key = strips_.key(body, block_);
+      for (Index group = 0; group < strips_.groups(); ++group)
+        if (field_of(group) == of.field) {
+          const std::size_t key = strips_.key(group, block_);
           occupied |= (are_in_order ? strips_.size(key) : strips_.size_in_order(key)) > 0;
         }
       std::uint8_t& was = of.blocks.occupied[static_cast<std::size_t>(block_)];
@@ -113,16 +116,17 @@ class BlockSweep {
       was = occupied ? 1 : 0;
     }
   }
-  KernelRows<D, K>& rows_of(Index body) const noexcept { return fields_[m_.problem.contacts.field_of(body)]; }
-  void take(Index body) noexcept { through_.take(rows_of(body), body); }
+  std::size_t field_of(Index group) const noexcept { return m_.problem.field_of(strips_.body_of(group), strips_.is_behind(group)); }
+  KernelRows<D, K>& rows_of(Index group) const noexcept { return fields_[field_of(group)]; }
+  void take(Index group) noexcept { through_.take(rows_of(group), strips_.body_of(group)); }
 
   /// Calls f(key, number, columns) for the strips that have particles, in order or put in order, with their cells opened.
   template <class F>
   void for_each_strip(const SweepParts& parts, F&& f)
   {
     const std::size_t loops = parts.moves && parts.deposits ? 2 : 1;  // over packs, while the next strip is prefetched
-    for (Index body = 0; body < m_.n_bodies(); ++body) {
-      const std::size_t key = strips_.key(body, block_);
+    for (Index group = 0; group < strips_.groups(); ++group) {
+      const std::size_t key = strips_.key(group, block_);
       const auto strips = strips_.strips(key);
       for (std::size_t s = 0; s < strips.size(); ++s) {
         const Strip& strip = strips[s];
@@ -141,7 +145,7 @@ class BlockSweep {
   void open_cells(std::size_t key, Index number)
   {
     const Strip& strip = strips_.strips(key)[static_cast<std::size_t>(number)];
-    take(strips_.body(key));
+    take(strips_.group(key));
     begin_runs(static_cast<std::size_t>(strip.n));
     std::size_t begin = 0;
     for (Index c = 0; c < strip_cells; ++c) {
@@ -154,17 +158,18 @@ class BlockSweep {
   /// Adds the particles that change their cell within the block, while it is in the cache.
   void add_arrivals_within()
   {
-    for (Index body = 0; body < m_.n_bodies(); ++body) {
-      strips_.find_cells(m_.problem.mesh, m_.problem.locator, strips_.key(body, block_), scratch_.arrivals);
-      add_arrivals(body, scratch_.arrivals);
+    for (Index group = 0; group < strips_.groups(); ++group) {
+      strips_.find_cells(m_.problem.mesh, m_.problem.locator, strips_.key(group, block_), scratch_.within);
+      for (const bool behind : {false, true})
+        add_arrivals(strips_.group_of(strips_.body_of(group), behind), scratch_.within[behind ? 1 : 0]);
     }
   }
-  void add_arrivals(Index body, std::span<const Arrival> arriving)
+  void add_arrivals(Index group, std::span<const Arrival> arriving)
   {
     if (arriving.empty())
       return;
-    take(body);
-    rows_of(body).blocks.occupied[static_cast<std::size_t>(block_)] = 1;
+    take(group);
+    rows_of(group).blocks.occupied[static_cast<std::size_t>(block_)] = 1;
     const StripColumns<D> columns = copy(arriving);
     begin_runs(arriving.size());
     for (std::size_t i = 0; i < arriving.size();) {
@@ -175,7 +180,7 @@ class BlockSweep {
     }
     find_shares(columns.x, scratch_);
     through_.add(columns, arriving.size(), block_);
-    add_surface_loads(body, columns);
+    add_surface_loads(group, columns);
   }
 
   void begin_runs(std::size_t particles)
@@ -273,12 +278,14 @@ class BlockSweep {
     return {scratch_.pore_after, 0};
   }
 
-  /// Computes the forces of loads at a time, lists the particles that have left their cells, and sums the others.
-  void deposit(std::size_t key, Index number, const StripColumns<D>& columns, Real time)
+  /// Computes the forces of loads at a time, lists the particles that have left their cells or the side of a sheet, and sums the others.
+  void deposit(std::size_t key, Index number, const StripColumns<D>& columns, Real time, SidesAre sides)
   {
     const std::size_t n = scratch_.runs.back().end;
     find_forces(m_, time, columns, n);
     find_shares(columns.x, scratch_);
+    if (columns.side)
+      find_sides(columns, sides);
     auto run = scratch_.runs.begin();
     for (const Index i : scratch_.left) {
       while (static_cast<std::size_t>(i) >= run->end)
@@ -289,13 +296,33 @@ class BlockSweep {
         share[i] = 0;
     }
     through_.add(columns, n, block_);
-    add_surface_loads(strips_.body(key), columns);
+    add_surface_loads(strips_.group(key), columns);
+  }
+  /// Finds the sides of sheets that particles are on, unless they are known, and lists the particles that change theirs as leavers.
+  void find_sides(const StripColumns<D>& columns, SidesAre sides)
+  {
+    const std::size_t cell_leavers = scratch_.left.size();
+    for (const CellRun<D>& run : scratch_.runs) {
+      const Index cell = run.frame->cell;
+      for (std::size_t i = run.begin; i < run.end; ++i) {
+        SideOfSheet side(columns.side.of(i));
+        if (sides == SidesAre::old) {
+          side = m_.work.sheets.side(m_.problem.mesh, m_.problem.rigid, m_.state.rigid, cell, columns.x.of(i), side);
+          columns.side.set(i, side.number());
+        }
+        if (side.changes)
+          scratch_.left.push_back(static_cast<Index>(i));
+      }
+    }
+    const auto middle = scratch_.left.begin() + static_cast<std::ptrdiff_t>(cell_leavers);
+    std::inplace_merge(scratch_.left.begin(), middle, scratch_.left.end());
+    scratch_.left.erase(std::unique(scratch_.left.begin(), scratch_.left.end()), scratch_.left.end());
   }
   /// Adds the virtual stress of particles that stay, of a body on whose surface loads act.
-  void add_surface_loads(Index body, const StripColumns<D>& columns)
+  void add_surface_loads(Index group, const StripColumns<D>& columns)
   {
-    for (RowsOfLoad<D>& rows : rows_of(body).surfaces.all())
-      if (const SurfaceLoad<D>& load = m_.problem.loads.on_surfaces[rows.load]; load.body == body)
+    for (RowsOfLoad<D>& rows : rows_of(group).surfaces.all())
+      if (const SurfaceLoad<D>& load = m_.problem.loads.on_surfaces[rows.load]; load.body == strips_.body_of(group))
         through_.add_surface_load(load, columns, block_, rows.blocks);
   }
 

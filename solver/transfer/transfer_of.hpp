@@ -2,6 +2,7 @@
 // Transfer<D> for one kernel.  Included by the units in which the kernels of the list are compiled, one unit per kernel
 // (cmake/TalusLists.cmake), and where a kernel is not in the list.
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "solver/state/integrate.hpp"
@@ -47,7 +48,7 @@ class TransferOf final : public Transfer<D> {
 
   void prepare(const Problem<D>& problem) override
   {
-    while (fields_.size() < static_cast<std::size_t>(problem.contacts.n_fields)) {
+    while (fields_.size() < problem.n_fields()) {
       Rows& of = fields_.emplace_back(problem.mesh, kernel_, fields_.size());
       if (!problem.subdomain.alone())
         join(problem, of);
@@ -59,19 +60,17 @@ class TransferOf final : public Transfer<D> {
   void sum_strips(Model<D>& m) override
   {
     for (Rows& of : fields_) {
+      const auto is_of_field = [&](Index body) { return m.problem.contacts.field_of(body) == of.field % m.problem.fields_in_front(); };
       if (WeighsVertices<K, D> && m.problem.transfer.uses_musl()) {
         of.gradient_of_remapped.resize(of.projected.motion.size());
         of.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
       }
       if constexpr (Rows::projects) {
-        const auto is_of_field = [&](Index body) { return m.problem.contacts.field_of(body) == of.field; };
         of.interfaces.begin(m.problem.mesh, m.state.materials, is_of_field, kernel_.separates_materials());
         if (kernel_.extends_surfaces())
           of.extension.begin(m.problem.mesh);
       }
-      of.surfaces.begin(
-          m.problem.loads.on_surfaces, [&](Index body) { return m.problem.contacts.field_of(body) == of.field; }, of.blocks,
-          *m.problem.ranks, m.problem.mesh, m.problem.subdomain);
+      of.surfaces.begin(m.problem.loads.on_surfaces, is_of_field, of.blocks, *m.problem.ranks, m.problem.mesh, m.problem.subdomain);
     }
     m.work.on_surfaces.resize(m.problem.loads.on_surfaces.size());
     for_each_reading_block(
@@ -93,7 +92,7 @@ class TransferOf final : public Transfer<D> {
   {
     for (Rows& of : fields_) {
       Nodes<D>& nodes = nodes_of(m, of);
-      const auto find_nodes = [&] { nodes.in_use.find(of.blocks.occupied, !m.problem.loads.on_mesh.empty()); };
+      const auto find_nodes = [&] { nodes.in_use.find(occupied_blocks(m, of), !m.problem.loads.on_mesh.empty()); };
       if constexpr (Rows::projects) {
         assemble<Whole>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, find_nodes);
         of.interfaces.find_rows(m.problem.mesh, nodes.in_use, of.ghosts.cells);
@@ -109,14 +108,24 @@ class TransferOf final : public Transfer<D> {
 
   void filter_acceleration([[maybe_unused]] Model<D>& m) override
   {
-    if constexpr (Rows::projects)
+    if constexpr (Rows::projects) {
+      const Sheets<D>& sheets = m.work.sheets;
       for (Rows& of : fields_) {
         std::vector<Vec<D>>& felt = nodes_of(m, of).felt;
         of.ghosts.felt.send(felt, Numbers{});
-        talus::filter_acceleration(
-            kernel_.node_operators(), m.problem.own, nodes_of(m, of).in_use, [&] { of.ghosts.felt.take(felt, Numbers{}); }, of.projected,
-            felt);
+        project_acceleration(
+            kernel_.node_operators(), nodes_of(m, of).in_use, [&] { of.ghosts.felt.take(felt, Numbers{}); }, of.projected, felt);
       }
+      for (Rows& of : fields_)
+        talus::filter_acceleration(
+            kernel_.node_operators(), m.problem.own, nodes_of(m, of).in_use,
+            [&](Index v, auto&& f) {
+              f(of.projected);
+              if (sheets.any() && !sheets.is_parted(of.field, v))
+                f(fields_[sheets.other_field(of.field)].projected);
+            },
+            nodes_of(m, of).felt);
+    }
   }
 
   void send_motion(Model<D>& m) override
@@ -192,7 +201,7 @@ class TransferOf final : public Transfer<D> {
     for (const Rows& of : fields_) {
       const Nodes<D>& nodes = nodes_of(m, of);
       NodesInUse in_use = nodes.in_use;
-      in_use.find(of.blocks.occupied, !m.problem.loads.on_mesh.empty());
+      in_use.find(occupied_blocks(m, of), !m.problem.loads.on_mesh.empty());
       const Real of_nodes = static_cast<Real>(in_use.size()) / static_cast<Real>(m.problem.mesh.n_nodes());
       const Real of_blocks = static_cast<Real>(std::ranges::count(of.blocks.occupied, 1)) / static_cast<Real>(of.blocks.size());
       bytes += of.bytes(of_nodes, of_blocks) +
@@ -219,6 +228,17 @@ class TransferOf final : public Transfer<D> {
 
  private:
   using Sweep = BlockSweep<D, K>;
+
+  /// Whether blocks hold particles whose sums the nodes of a field get: with sheets those on both sides.  Valid until the next call.
+  std::span<const std::uint8_t> occupied_blocks(const Model<D>& m, const Rows& of) const
+  {
+    if (!m.work.sheets.any())
+      return of.blocks.occupied;
+    const auto& behind = fields_[m.work.sheets.other_field(of.field)].blocks.occupied;
+    occupied_on_both_sides_.resize(behind.size());
+    std::ranges::transform(of.blocks.occupied, behind, occupied_on_both_sides_.begin(), std::bit_or());
+    return occupied_on_both_sides_;
+  }
 
   /// Makes the exchanges with other ranks.  Collective.
   static void join(const Problem<D>& problem, Rows& of)
@@ -311,12 +331,18 @@ class TransferOf final : public Transfer<D> {
     };
     for_each_own_block(rows().halo, add_momentum, [&] { send_rows<MomentumAlone>(); });
     for (Rows& of : fields_)
+      assemble_momentum(m, of);
+    m.work.sheets.unite_momentum(m.work.fields);
+    for (Rows& of : fields_)
       find_remapped_velocity(m, of, mid);
     m.work.contact.hold(mid, m.state.boundary, m.work.fields);
     m.work.cuts.hold(mid, m.problem.own, m.state.boundary, m.work.fields.front().nodes);
     m.work.rigid.hold(mid, m.state.boundary, m.state.rigid, m.work.fields);
+    for (VelocityField<D>& field : m.work.fields)
+      field.small_mass_nodes.extrapolate_velocity(m.problem.mesh, m.problem.own, m.state.boundary, mid, field.nodes);
+    m.work.sheets.copy_to_field_behind(std::span(m.work.fields), [](Nodes<D>& nodes) -> auto& { return nodes.remapped; });
     for (Rows& of : fields_)
-      send_remapped_velocity(m, of, mid);
+      send_remapped_velocity(m, of);
     if constexpr (Rows::projects)
       for (Rows& of : fields_) {
         Nodes<D>& nodes = nodes_of(m, of);
@@ -327,19 +353,22 @@ class TransferOf final : public Transfer<D> {
       }
   }
 
-  /// MUSL: puts the momentum of the new particle velocities, which is in the rows of blocks, on the nodes, under the boundary conditions.
-  void find_remapped_velocity(Model<D>& m, Rows& of, Real mid)
+  /// MUSL: puts the momentum of the new particle velocities, which is in the rows of blocks, on the nodes.
+  void assemble_momentum(Model<D>& m, Rows& of)
   {
-    const Mesh<D>& mesh = m.problem.mesh;
-    const OwnNodes& own = m.problem.own;
     Nodes<D>& nodes = nodes_of(m, of);
     if constexpr (Rows::projects) {
-      assemble<MomentumAlone>(of.blocks, own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, [] {});
-      project_momentum(kernel_.node_operators(), mesh, own, of.projected.sum, nodes.in_use, nodes.sum);
+      assemble<MomentumAlone>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, [] {});
+      project_momentum(kernel_.node_operators(), m.problem.mesh, m.problem.own, of.projected.sum, nodes.in_use, nodes.sum);
     } else {
-      assemble<MomentumAlone>(of.blocks, own, of.halo, of.ghosts.sums, nodes.in_use, nodes.sum, [] {});
+      assemble<MomentumAlone>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, nodes.sum, [] {});
     }
-    m.work.fields[of.field].small_mass_nodes.lump_momentum(mesh, own, nodes);
+  }
+  /// MUSL: the velocities of this momentum, under the boundary conditions.
+  void find_remapped_velocity(Model<D>& m, Rows& of, Real mid)
+  {
+    Nodes<D>& nodes = nodes_of(m, of);
+    m.work.fields[of.field].small_mass_nodes.lump_momentum(m.problem.mesh, m.problem.own, nodes);
     nodes.in_use.for_each([&](Index n) {
       const auto i = static_cast<std::size_t>(n);
       const Vec<D> v = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
@@ -347,17 +376,17 @@ class TransferOf final : public Transfer<D> {
     });
     m.state.boundary.hold(mid, nodes);
   }
-  /// Moves nodes of small mass with their hosts, and starts to send the remapped velocities to other ranks.
-  void send_remapped_velocity(Model<D>& m, Rows& of, Real mid)
+  /// Starts to send the remapped velocities to other ranks.
+  void send_remapped_velocity(Model<D>& m, Rows& of)
   {
     Nodes<D>& nodes = nodes_of(m, of);
-    m.work.fields[of.field].small_mass_nodes.extrapolate_velocity(m.problem.mesh, m.problem.own, m.state.boundary, mid, nodes);
     of.ghosts.motion.send(nodes.remapped, Whole{});
     add_ranges(nodes.in_use.own(), m.work.sums.remap, [&](Index n) { return remap_work(nodes, n); });
   }
 
   K kernel_;
   std::vector<Rows> fields_;
+  mutable std::vector<std::uint8_t> occupied_on_both_sides_;
 };
 
 template <class K, int D>

@@ -268,6 +268,14 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"rigid", rigid});
   rigid.more += "contacts: [{between: [low, high], friction: 0.3}]\nkernel: umls\n";
   all.push_back({"rigid_in_contact_umls", rigid});
+  SceneParts sheet = two_materials;
+  sheet.more =
+      "rigid:\n  - {name: blade, sheet: [[0.8, 1.9], [0.75, 1.2], [0.7, 0.3]], motion: given, velocity: [2, -4], angular_velocity: [3], "
+      "friction: 0.2}\n"
+      "  - {name: flap, sheet: [[1.1, 0.55], [1.7, 0.5]], mass: 60, friction: 0.1, velocity: [-2, 3]}\n";
+  all.push_back({"sheets", sheet});
+  sheet.more += "kernel: umls\ntransfer: {scheme: apic}\n";
+  all.push_back({"sheets_umls", sheet});
   SceneParts extended = two_materials;
   extended.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended", extended});
@@ -313,6 +321,11 @@ inline std::vector<SceneCase> scenes_of_all()
       "velocity: "
       "[3, -3, 0], angular_velocity: [1, 2, 3]}\n";
   all.push_back({"rigid_solid", rigid_in_3d});
+  SceneParts sheet_in_3d = in_3d;
+  sheet_in_3d.more =
+      "rigid:\n  - {name: blade, sheet: [[0.5, 0.2, -0.2], [0.5, 1.4, -0.2], [0.55, 1.4, 0.6], [0.55, 0.2, 0.6]], motion: given, velocity: "
+      "[3, 0, 0], angular_velocity: [0, 2, 0], friction: 0.3}\n";
+  all.push_back({"sheet_solid", sheet_in_3d});
   SceneParts loaded_in_3d = in_3d;
   loaded_in_3d.loads =
       "loads: [{type: traction, on: \"low:x_max\", pressure: 2.0e3}, {type: traction, on: \"low:y_max\", traction: [1.0e3, 0, -500]}]\n";

@@ -45,13 +45,43 @@ TEST_F(RigidOfScene, WhatCannotBeIsRefusedWithItsPlace)
   EXPECT_EQ(outcome.code, 2);
   for (const char* const words :
        {"rigid[0] \"block\".name: \"block\" is the name of a body already", "rigid[1] \"a\": give mass or density, not both",
-        "rigid[1] \"a\".shape.centre: needs 2 values in 2 dimensions, not 3", "rigid[2] \"a\": give a shape or a file",
+        "rigid[1] \"a\".shape.centre: needs 2 values in 2 dimensions, not 3", "rigid[2] \"a\": give one of shape, file, sheet and sheet_file",
         "rigid[2] \"a\".name: \"a\" is the name of rigid[1] already", "rigid[3] \"b\": a free body needs mass or density",
         "rigid[3] \"b\".shape: a rigid body is a box, sphere, cylinder or polygon",
         "rigid[4] \"c\".file: an STL file is a surface in space", "rigid[4] \"c\".inertia: needs 1 value in 2 dimensions, not 3",
         "rigid[5] \"d\": a table is of a given motion", "rigid[4] \"c\".friction: -1 must be >= 0"})
     EXPECT_THAT(outcome.err, HasSubstr(words));
   EXPECT_THAT(outcome.err, HasSubstr("scene.yaml:12:12: error: rigid[0] \"block\".name"));
+}
+
+TEST_F(RigidOfScene, SheetsThatCannotBeAreRefused)
+{
+  const Outcome outcome = check(
+      "  - {name: a, sheet: [[1, 2]], density: 3}\n"
+      "  - {name: b, sheet: [[1, 2], [1, 2], [1, 0, 0]], motion: given}\n"
+      "  - {name: c, sheet_file: blade.stl, motion: given}\n"
+      "contacts: [{between: [block, other]}]\nprojected: {surfaces: extended}\n");
+  EXPECT_EQ(outcome.code, 2);
+  for (const char* const words :
+       {"scene.yaml:12:5: error: rigid[0] \"a\": a sheet has no volume: give its mass instead of a density",
+        "rigid[0] \"a\".sheet: a sheet needs at least 2 points in 2 dimensions, not 1", "rigid[1] \"b\".sheet[1]: repeats the point before",
+        "rigid[1] \"b\".sheet[2]: needs 2 values in 2 dimensions, not 3",
+        "rigid[2] \"c\".sheet_file: an STL file is a surface in space: in 2 dimensions give the points of a sheet",
+        "rigid[0] \"a\".sheet: sheets and contacts of bodies cannot act in one scene yet",
+        "rigid[0] \"a\".sheet: beside a sheet gradients are not extended"})
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+  EXPECT_THAT(check("  - {name: d, sheet: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]], motion: given}\n", true).err,
+              HasSubstr("rigid[0] \"d\".sheet: the corners of a sheet have to be those of a flat convex polygon"));
+}
+
+TEST_F(RigidOfScene, ASheetIsDrawnAndSaysWhatItIs)
+{
+  const Outcome outcome = check("  - {name: pile, sheet: [[1, 1.8], [1, 0.5], [1.2, 0.3]], mass: 5, velocity: [1, 0]}\n");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("rigid body \"pile\": 5 kg, free, a sheet of 2 facets, friction 0"));
+  ASSERT_EQ(talus("run scene.yaml --out out").code, 0);
+  const StoredMesh drawn = read_mesh(folder_ / "out/rigid_0000.vtu");
+  EXPECT_EQ(drawn.corners.size(), 2 * 2 * 3u) << "two triangles a segment";
 }
 
 TEST_F(RigidOfScene, BodiesThatBeginInsideOthersAreRefused)

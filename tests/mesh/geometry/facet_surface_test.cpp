@@ -117,6 +117,41 @@ TEST(SurfaceOfTriangles, ThatIsOpenOrInsideOutIsAFault)
   EXPECT_THAT(FacetSurface<3>(corners, one_turned).fault(), HasSubstr("do not all show the same side"));
 }
 
+TEST(SurfaceOfTriangles, OfASheetKnowsItsRim)
+{
+  const std::vector<Vec3> corners{{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}};
+  const FacetSurface<3> sheet(corners, {{0, 1, 2}, {0, 2, 3}});
+  EXPECT_EQ(sheet.fault_of_sheet(), "");
+  EXPECT_NEAR(sheet.sheet().volume, 6, 1e-13);
+  EXPECT_LT((sheet.sheet().centre - Vec3(1.5, 1, 0)).norm(), 1e-13);
+  EXPECT_NEAR(sheet.sheet().inertia(0, 0), 6 * 4 / 12.0, 1e-12);
+  EXPECT_NEAR(sheet.sheet().inertia(2, 2), 6 * (9 + 4) / 12.0, 1e-12);
+  const auto over_diagonal = sheet.distance({1.5, 1, -0.3}), beyond = sheet.distance({-0.4, 1, -0.3}), corner = sheet.distance({4, 3, 1});
+  EXPECT_FALSE(over_diagonal.on_rim) << "an edge of two facets";
+  EXPECT_NEAR(over_diagonal.distance, -0.3, 1e-13);
+  EXPECT_TRUE(beyond.on_rim);
+  EXPECT_NEAR(beyond.distance, -0.5, 1e-13);
+  EXPECT_TRUE(corner.on_rim);
+  EXPECT_GT(corner.distance, 0);
+
+  EXPECT_THAT(FacetSurface<3>(corners, {{0, 1, 2}, {0, 3, 2}}).fault_of_sheet(), HasSubstr("show different sides"));
+  std::vector<Vec3> three = corners;
+  three.push_back({1, 1, 1});
+  EXPECT_THAT(FacetSurface<3>(three, {{0, 1, 2}, {0, 2, 3}, {0, 2, 4}}).fault_of_sheet(), HasSubstr("branches"));
+  EXPECT_THAT(box({1, 1, 1}).fault_of_sheet(), HasSubstr("closed"));
+}
+
+TEST(SurfaceOfSegments, OfASheetKnowsItsRim)
+{
+  const FacetSurface<2> line({{0, 0}, {2, 0}, {2, 1}}, {{0, 1}, {1, 2}});
+  EXPECT_EQ(line.fault_of_sheet(), "");
+  EXPECT_NEAR(line.sheet().volume, 3, 1e-13);
+  EXPECT_LT((line.sheet().centre - Vec<2>(4.0 / 3, 1.0 / 6)).norm(), 1e-13);
+  EXPECT_FALSE(line.distance({2.1, -0.1}).on_rim) << "the corner is within";
+  EXPECT_TRUE(line.distance({-0.1, 0.1}).on_rim);
+  EXPECT_LT(line.distance({-0.1, 0.1}).distance, 0) << "left of the way is behind";
+}
+
 TEST(SurfaceOfTriangles, SamplesAreNowhereFartherApartThanAsked)
 {
   const FacetSurface<3> surface = box({1, 1, 1});
