@@ -38,6 +38,8 @@ CASES = [
     "rigid_motion",
     "sliding_block",
     "wall_gap",
+    "sheet",
+    "wedge",
     "colliding_disks",
     "contact",
     "contact_bodies",
