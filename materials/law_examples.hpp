@@ -53,6 +53,13 @@ inline Hencky law_example()
   return detail::elastic_example<Hencky>();
 }
 template <>
+inline Viscoelastic law_example()
+{
+  auto law = detail::elastic_example<Viscoelastic>();
+  law.first = PronyTerm{.share = 0.4, .time = 0.01};
+  return law;
+}
+template <>
 inline LinearFirstPiola law_example()
 {
   return detail::elastic_example<LinearFirstPiola>();

@@ -13,6 +13,7 @@
 #include "materials/mu_i.hpp"
 #include "materials/neo_hookean.hpp"
 #include "materials/newtonian.hpp"
+#include "materials/viscoelastic.hpp"
 #include "materials/von_mises.hpp"
 
 namespace talus {
@@ -23,6 +24,7 @@ using Laws = TypeList<
     NeoHookean,
     Corotated,
     Hencky,
+    Viscoelastic,
     DruckerPrager,
     MohrCoulomb,
     ModifiedCamClay,

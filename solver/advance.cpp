@@ -112,7 +112,8 @@ void apply_local_damping(Model<D>& m)
     return;
   for (VelocityField<D>& field : m.work.fields)
     find_net_acceleration(field.nodes);
-  m.work.sheets.copy_to_field_behind(std::span(m.work.fields), [](Nodes<D>& nodes) -> auto& { return nodes.felt; });
+  m.work.sheets.copy_to_field_behind(
+      std::span(m.work.fields), [](Nodes<D> & nodes) -> auto& { return nodes.felt; });
   m.transfer->filter_acceleration(m);
   if (m.state.stage.damping > 0)
     for (VelocityField<D>& field : m.work.fields)
@@ -125,7 +126,8 @@ void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 {
   for (VelocityField<D>& field : m.work.fields)
     field.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, field.nodes, m.work.sums.beyond_nodes);
-  m.work.sheets.copy_to_field_behind(std::span(m.work.fields), [](Nodes<D>& nodes) -> auto& { return nodes.motion; });
+  m.work.sheets.copy_to_field_behind(
+      std::span(m.work.fields), [](Nodes<D> & nodes) -> auto& { return nodes.motion; });
   m.transfer->send_motion(m);
 }
 
@@ -157,8 +159,7 @@ void conduct_heat(Model<D>& m, Real dt)
 {
   const ParticleStrips<D>& strips = *m.work.strips;
   for (Index group = 0; group < strips.groups(); ++group)
-    conduct_heat(m.problem.mesh, m.state.materials[static_cast<std::size_t>(strips.body_of(group))].law(), strips, group, dt,
-                 *m.work.heat);
+    conduct_heat(m.problem.mesh, m.state.materials[static_cast<std::size_t>(strips.body_of(group))].law(), strips, group, dt, *m.work.heat);
 }
 
 /// Averaged volumes are needed before the stress, heat is conducted after it.

@@ -37,13 +37,15 @@ struct RigidSpec {
         optional("shape", &RigidSpec::shape, any, "-", "what it fills: a box, sphere, cylinder or polygon without holes"),
         optional("file", &RigidSpec::file, any, "-",
                  "3-D, instead of a shape: an STL file of its closed surface, in metres, relative to this file"),
-        optional("sheet", &RigidSpec::sheet, any, "m",
-                 "instead of a shape: a sheet without thickness, which parts the material on its two sides; in 2-D the points of a line, in "
-                 "3-D the corners of a flat convex polygon"),
+        optional(
+            "sheet", &RigidSpec::sheet, any, "m",
+            "instead of a shape: a sheet without thickness, which parts the material on its two sides; in 2-D the points of a line, in "
+            "3-D the corners of a flat convex polygon"),
         optional("sheet_file", &RigidSpec::sheet_file, any, "-",
                  "3-D, instead of a shape: an STL file of a sheet, whose surface is open, in metres, relative to this file"),
         optional("at", &RigidSpec::at, any, "m", "where the origin of the file lies; default the origin"),
-        optional("mass", &RigidSpec::mass, positive, "kg", "its mass, of unit thickness in 2-D; a free body needs mass or density, a free sheet mass"),
+        optional("mass", &RigidSpec::mass, positive, "kg",
+                 "its mass, of unit thickness in 2-D; a free body needs mass or density, a free sheet mass"),
         optional("density", &RigidSpec::density, positive, "kg/m^3", "instead of a mass"),
         optional("inertia", &RigidSpec::inertia, positive, "kg m^2",
                  "moments of inertia about its centre: one number in 2-D, in 3-D those about x, y and z; default those of a uniform solid"),

@@ -79,7 +79,7 @@ class FacetSurface {
   std::vector<std::array<Vec<D>, D>> normal_of_edge_;
   std::vector<std::array<bool, D>> edge_on_rim_;  // 3-D: likewise
   std::vector<bool> node_on_rim_;                 // of corners
-  Real size_ = 0;  // diagonal of the bounding box [m]
+  Real size_ = 0;                                 // diagonal of the bounding box [m]
   BoxTree<D> tree_;
 };
 

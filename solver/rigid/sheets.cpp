@@ -12,8 +12,8 @@ constexpr Real zone = 2 * reach + 1;
 }  // namespace
 
 template <int D>
-void Sheets<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const OwnNodes& own,
-                      const RigidScene<D>& scene, std::size_t in_front)
+void Sheets<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const OwnNodes& own, const RigidScene<D>& scene,
+                      std::size_t in_front)
 {
   sheets_.clear();
   for (std::size_t r = 0; r < scene.bodies.size(); ++r)

@@ -42,7 +42,8 @@ void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locato
     leaver.to = locator(mesh, x, leaver.to).value_or(none);  // also nothing for a position that is not finite
     leaver.is_summed = leaver.to != none && leaver.to / block_cells == leaver.cell / block_cells;
     if (leaver.is_summed)
-      within[is_behind(new_group(body(key), record)) ? 1 : 0].push_back({leaver.to, StripIds::id_of(record[layout_.step_arrays().id]), record, true});
+      within[is_behind(new_group(body(key), record)) ? 1 : 0].push_back(
+          {leaver.to, StripIds::id_of(record[layout_.step_arrays().id]), record, true});
   }
 }
 
@@ -113,8 +114,8 @@ void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& m
     for (const MigratingParticle& one :
          migration.exchange([&](Index b) { return layout_.width() + layout_.gradients() + history_width(b); })) {
       const Index cell = subdomain.local_cell(one.head.whole_cell);
-      unsorted_.push_back(
-          {key_of(new_group(one.head.body, one.numbers), cell), {cell, StripIds::id_of(one.numbers[layout_.step_arrays().id]), one.numbers, false}});
+      unsorted_.push_back({key_of(new_group(one.head.body, one.numbers), cell),
+                           {cell, StripIds::id_of(one.numbers[layout_.step_arrays().id]), one.numbers, false}});
     }
   sort_arrivals();
 }

@@ -93,7 +93,7 @@ class StripScratch {
   PrefetchAhead ahead;
   std::vector<Arrival> arrivals;
   std::array<std::vector<Arrival>, 2> within;  ///< those that stay in the block, in front of sheets and behind
-  Strip arriving;  ///< particles that come to a block
+  Strip arriving;                              ///< particles that come to a block
   AlignedNumbers arriving_memory;
   Index arriving_width = 0;
 

@@ -340,7 +340,8 @@ class TransferOf final : public Transfer<D> {
     m.work.rigid.hold(mid, m.state.boundary, m.state.rigid, m.work.fields);
     for (VelocityField<D>& field : m.work.fields)
       field.small_mass_nodes.extrapolate_velocity(m.problem.mesh, m.problem.own, m.state.boundary, mid, field.nodes);
-    m.work.sheets.copy_to_field_behind(std::span(m.work.fields), [](Nodes<D>& nodes) -> auto& { return nodes.remapped; });
+    m.work.sheets.copy_to_field_behind(
+        std::span(m.work.fields), [](Nodes<D> & nodes) -> auto& { return nodes.remapped; });
     for (Rows& of : fields_)
       send_remapped_velocity(m, of);
     if constexpr (Rows::projects)

@@ -35,6 +35,11 @@ inline void add_options(SoilStrength& law)
   law.softening_strain = 0.05;
   law.tension_cutoff = 4e3;
 }
+inline void add_options(Viscoelastic& law)
+{
+  law.second = PronyTerm{.share = 0.2, .time = 0.1};
+  law.third = PronyTerm{.share = 0.1, .time = 2};
+}
 inline void add_options(Newtonian& law) { law.volume_viscosity = 2; }
 inline void add_options(VonMises& law)  // without `rate`: yield() is that of slow loading
 {

@@ -45,9 +45,9 @@ TEST_F(RigidOfScene, WhatCannotBeIsRefusedWithItsPlace)
   EXPECT_EQ(outcome.code, 2);
   for (const char* const words :
        {"rigid[0] \"block\".name: \"block\" is the name of a body already", "rigid[1] \"a\": give mass or density, not both",
-        "rigid[1] \"a\".shape.centre: needs 2 values in 2 dimensions, not 3", "rigid[2] \"a\": give one of shape, file, sheet and sheet_file",
-        "rigid[2] \"a\".name: \"a\" is the name of rigid[1] already", "rigid[3] \"b\": a free body needs mass or density",
-        "rigid[3] \"b\".shape: a rigid body is a box, sphere, cylinder or polygon",
+        "rigid[1] \"a\".shape.centre: needs 2 values in 2 dimensions, not 3",
+        "rigid[2] \"a\": give one of shape, file, sheet and sheet_file", "rigid[2] \"a\".name: \"a\" is the name of rigid[1] already",
+        "rigid[3] \"b\": a free body needs mass or density", "rigid[3] \"b\".shape: a rigid body is a box, sphere, cylinder or polygon",
         "rigid[4] \"c\".file: an STL file is a surface in space", "rigid[4] \"c\".inertia: needs 1 value in 2 dimensions, not 3",
         "rigid[5] \"d\": a table is of a given motion", "rigid[4] \"c\".friction: -1 must be >= 0"})
     EXPECT_THAT(outcome.err, HasSubstr(words));

@@ -43,7 +43,8 @@ Model<S::D> block_and_sheet(const std::optional<SheetAt>& place, const Vec<S::D>
   m.problem.transfer = {.scheme = Scheme::flip, .musl = musl, .pic_damping_time = {}, .pic_damping_crossings = {}};
   add_body<D>(m, "block", rubber(1e4, 0.3, 1000), 4, in_block<D>, velocity);
   if (place) {
-    RigidBody<D> sheet{.name = "sheet", .shape = upright_sheet<D>(place->low, place->high), .mass = place->mass, .friction = 0, .motion = {}};
+    RigidBody<D> sheet{
+        .name = "sheet", .shape = upright_sheet<D>(place->low, place->high), .mass = place->mass, .friction = 0, .motion = {}};
     sheet.inertia = place->mass * Mat3::Identity();
     if (place->mass == 0)
       sheet.motion = RigidMotion<D>{v_sheet, Vec3::Zero(), {}};
@@ -101,7 +102,9 @@ std::array<Index, 2> count_sides(const Model<D>& m)
 TYPED_TEST(SheetIn, NodesThatItDoesNotPartAreOne)
 {
   constexpr int D = TypeParam::D;
-  const auto waves = [](const Vec<D>& x) -> Vec<D> { return along<D>(D - 1, std::sin(5 * x[0])) + along<D>(0, 0.3 * std::cos(4 * x[D - 1])); };
+  const auto waves = [](const Vec<D>& x) -> Vec<D> {
+    return along<D>(D - 1, std::sin(5 * x[0])) + along<D>(0, 0.3 * std::cos(4 * x[D - 1]));
+  };
   for (const bool musl : {true, false}) {
     auto free = block_and_sheet<TypeParam>({}, Vec<D>::Zero(), waves, musl);
     auto beside = block_and_sheet<TypeParam>(SheetAt{.low = D == 2 ? 0.95 : 1.15}, Vec<D>::Zero(), waves, musl);
