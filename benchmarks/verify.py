@@ -27,6 +27,7 @@ import report  # noqa: E402
 CASES = [
     "single_particle_bar",
     "vibrating_bar",
+    "viscoelastic_bar",
     "irregular_bar",
     "self_weight_column",
     "manufactured_solution",

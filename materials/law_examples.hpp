@@ -56,7 +56,8 @@ template <>
 inline Viscoelastic law_example()
 {
   auto law = detail::elastic_example<Viscoelastic>();
-  law.first = PronyTerm{.share = 0.4, .time = 0.01};
+  law.relaxing_share = 0.4;
+  law.relaxation_time = 0.01;
   return law;
 }
 template <>

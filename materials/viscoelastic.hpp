@@ -13,7 +13,7 @@
 
 namespace talus {
 
-/// A share of the shear modulus that relaxes with a time of its own.
+/// A further share of the shear modulus that relaxes, with a time of its own.
 struct PronyTerm {
   Real share{}, time{};
   static constexpr auto fields()
@@ -32,26 +32,27 @@ struct PronyTerm {
 struct Viscoelastic : HenckyPlastic {
   static constexpr std::string_view name = "viscoelastic";
   static constexpr std::string_view summary =
-      "Linear viscoelasticity in shear by a Prony series of up to three terms, on logarithmic elasticity (Wiechert 1893; Reese and Govindjee "
+      "Linear viscoelasticity in shear by a Prony series of up to three terms, on logarithmic elasticity (Wiechert 1893; Reese and "
+      "Govindjee "
       "1998).";
-  std::optional<PronyTerm> first, second, third;
+  Real relaxing_share{}, relaxation_time{};
+  std::optional<PronyTerm> second, third;
   static constexpr auto fields()
   {
     using Law = Viscoelastic;
-    return std::tuple_cat(std::tuple{required<Law, Real>("density", &Law::density, positive, "kg/m^3", "mass density at rest")},
-                          elastic_fields<Law>(),
-                          std::tuple{group("first", &Law::first, "a share of the shear modulus that relaxes; the elastic constants are those of "
-                                                                 "fast loading"),
-                                     group("second", &Law::second, "a second share, with another time"),
-                                     group("third", &Law::third, "a third share")});
+    return std::tuple_cat(
+        std::tuple{required<Law, Real>("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
+        std::tuple{required("relaxing_share", &Law::relaxing_share, positive, "-",
+                            "share of the shear modulus that relaxes; the elastic constants are those of fast loading"),
+                   required("relaxation_time", &Law::relaxation_time, positive, "s", "time in which the stress of this share falls to 1/e"),
+                   group("second", &Law::second, "a second share, with another time"), group("third", &Law::third, "a third share")});
   }
   void check(std::vector<std::string>& problems) const
   {
     Elasticity::check(problems);
-    if (!first && !second && !third)
-      problems.emplace_back("nothing relaxes: give the share and the time of first, or take the law hencky");
     if (const Real left = constants().share_left; !(left > 0))
-      problems.push_back(fmt::format("the shares of what relaxes add up to {:.6g}: they have to leave a part of the shear modulus", 1 - left));
+      problems.push_back(
+          fmt::format("the shares of what relaxes add up to {:.6g}: they have to leave a part of the shear modulus", 1 - left));
   }
 
   struct State {
@@ -78,10 +79,11 @@ struct Viscoelastic : HenckyPlastic {
   {
     const Moduli elastic = moduli();
     Constants c{.bulk = elastic.bulk, .shear = elastic.shear, .share_left = 1, .share = {}, .inverse = {}};
+    const PronyTerm first{relaxing_share, relaxation_time}, absent{0, 1};
     std::size_t k = 0;
-    for (const std::optional<PronyTerm>* term : {&first, &second, &third}) {
-      if (*term)
-        c.share_left -= (*term)->share, c.share[k] = (*term)->share, c.inverse[k] = 1 / (*term)->time;
+    for (const PronyTerm& term : {first, second.value_or(absent), third.value_or(absent)}) {
+      c.share_left -= term.share;
+      c.share[k] = term.share, c.inverse[k] = 1 / term.time;
       ++k;
     }
     return c;

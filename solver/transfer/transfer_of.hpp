@@ -12,19 +12,16 @@
 namespace talus {
 
 /// Nodes with less than this fraction of the mass of the lightest particle around are nodes of small mass.  Where weights may be negative,
-/// sums cancel and a small mass gives no information on the momentum: there the limit lies above the negative weights that moving least
-/// squares reach beside a boundary (0.012 of a particle).
+/// sums cancel: there the limit lies above the negative weights that moving least squares reach beside a boundary (0.012 of a particle).
 inline constexpr Real least_share = 1e-8, least_share_of_signed_weights = 2e-2;
 
 /// Limit of the ratio of the mass of a node to the sum of absolute masses from single cells.  Cells whose weights have different signs may
-/// leave a node next to no mass; velocity and acceleration are then quotients of two small differences.  Measured on two grids that become
-/// 4 and two that become 10 times finer from one cell to the next: with 0.1 particles invert on one, with 0.5 one gains 35 times its
-/// energy, with 0.3 none fails.  Without effect where all weights are positive.
+/// leave a node next to no mass; velocity and acceleration are then quotients of two small differences.  On four grids that become 4 or 10
+/// times finer from one cell to the next particles invert with 0.1, energy grows 35-fold with 0.5, and none fails with 0.3.
 inline constexpr Real least_share_of_cells = 0.3;
-/// Limit of the ratio of the mass of a node to the mean mass of the linear shape functions around, for kernels with node operators.  Rows
-/// of nodes on a wall contain nodes on the wall only, so a node beside a wall that carries a thin film has next to no mass, but the film's
-/// stress acts on it.  On a regular lattice the ratio is 0.4 under a film half a cell thick and 0.17 under a fifth of one; nodes at free
-/// surfaces have about 0.9.
+/// Limit of the ratio of the mass of a node to the mean mass of the linear shape functions around, for kernels with node operators.  Beside a
+/// wall that carries a thin film a node has next to no mass, but the film's stress acts on it.  On a regular lattice the ratio is 0.4 under a
+/// film half a cell thick and 0.17 under a fifth of one; nodes at free surfaces have about 0.9.
 inline constexpr Real least_share_of_hats = 0.2;
 
 template <int D, Kernel<D> K>
@@ -38,14 +35,12 @@ class TransferOf final : public Transfer<D> {
 
   std::span<Rows> fields() noexcept { return fields_; }
   Rows& rows() noexcept { return fields_.front(); }
-  const Rows& rows() const noexcept { return fields_.front(); }
 
   void join(const Problem<D>& problem) override
   {
     for (Rows& of : fields_)
       join(problem, of);
   }
-
   void prepare(const Problem<D>& problem) override
   {
     while (fields_.size() < problem.n_fields()) {
@@ -97,12 +92,12 @@ class TransferOf final : public Transfer<D> {
         assemble<Whole>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, find_nodes);
         of.interfaces.find_rows(m.problem.mesh, nodes.in_use, of.ghosts.cells);
         project_sums(kernel_.node_operators(), of.interfaces, m.problem.mesh, m.problem.own, of.projected.sum, nodes.in_use, nodes.sum);
-        add_surface_loads(m, of);
-        extend_forces(m, of);
       } else {
         assemble<Whole>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, nodes.sum, find_nodes);
-        add_surface_loads(m, of);
       }
+      add_surface_loads(m, of);
+      if constexpr (Rows::projects)
+        extend_forces(m, of);
     }
   }
 
@@ -157,7 +152,7 @@ class TransferOf final : public Transfer<D> {
               between.after_motion(b);
           });
     };
-    const bool before = static_cast<bool>(between.before_stress), after = static_cast<bool>(between.after_stress);
+    const bool before{between.before_stress}, after{between.after_stress};
     sweep({.orders = WeighsVertices<K, D> || !musl, .moves = true, .updates = !before, .deposits = !before && !after});
     if (before) {
       between.before_stress();
@@ -191,8 +186,7 @@ class TransferOf final : public Transfer<D> {
   {
     if constexpr (requires { kernel_.nodes_as_corners(); })
       return std::ranges::count_if(kernel_.nodes_as_corners(), [&](Index n) { return own.has(n); });
-    else
-      return 0;
+    return 0;
   }
 
   std::int64_t bytes(const Model<D>& m) const override
@@ -228,7 +222,6 @@ class TransferOf final : public Transfer<D> {
 
  private:
   using Sweep = BlockSweep<D, K>;
-
   /// Whether blocks hold particles whose sums the nodes of a field get: with sheets those on both sides.  Valid until the next call.
   std::span<const std::uint8_t> occupied_blocks(const Model<D>& m, const Rows& of) const
   {
