@@ -157,10 +157,11 @@ class Particles(_Fields):
         from .convert import particles_to_pyvista
         return particles_to_pyvista(self)
 
-    def plot(self, field: str | None = None, plane: str = "xy", body: str | int | None = None, ax: Any = None, **style: Any) -> Any:
+    def plot(self, field: str | None = None, plane: str = "xy", body: str | int | None = None, ax: Any = None, colorbar: bool = True,
+             **style: Any) -> Any:
         """Draws the particles and returns the axes; `Run.plot` has the arguments.  Needs matplotlib."""
         from .plots import plot_particles
-        return plot_particles(self, field, plane, body, ax, style)
+        return plot_particles(self, field, plane, body, ax, colorbar, style)
 
 
 class Mesh(_Fields):
@@ -196,10 +197,10 @@ class Mesh(_Fields):
         from .convert import mesh_to_pyvista
         return mesh_to_pyvista(self)
 
-    def plot(self, field: str | None = None, ax: Any = None, **style: Any) -> Any:
+    def plot(self, field: str | None = None, ax: Any = None, colorbar: bool = True, **style: Any) -> Any:
         """Draws a field on a 2-D mesh, or without a field its edges, and returns the axes.  Needs matplotlib."""
         from .plots import plot_mesh
-        return plot_mesh(self, field, ax, style)
+        return plot_mesh(self, field, ax, colorbar, style)
 
 
 class Series(Sequence[Any]):

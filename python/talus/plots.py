@@ -15,7 +15,7 @@ from .rasters import Raster
 from .tables import PURE, Table
 
 _MOST_CIRCLES = 200_000  # above this number particles are drawn as points: circles would take minutes
-_OVERLAP = 1.25         # of the diameter of a circle to the side of the square or cube that it stands for
+_OVERLAP = 1.4          # of the diameter of a circle to the side of the square or cube that it stands for
 _GRAVITY = re.compile(r"type:\s*gravity\b[^}]*?acceleration:\s*\[([^\]]*)\]", re.S)
 
 
@@ -46,7 +46,8 @@ def diameters(fields: Mapping[str, np.ndarray]) -> np.ndarray:
     return _OVERLAP * np.asarray(fields["volume"], float) ** (1 / dimension)
 
 
-def plot_particles(particles: Particles, field: str | None, plane: str, body: str | int | None, ax: Any, style: dict[str, Any]) -> Any:
+def plot_particles(particles: Particles, field: str | None, plane: str, body: str | int | None, ax: Any, colorbar: bool,
+                   style: dict[str, Any]) -> Any:
     """Draws particles as circles that touch their neighbours, the nearest to the eye on top."""
     collections = need("matplotlib.collections", "draws pictures")
     if len(plane) != 2 or plane[0] == plane[1] or not set(plane) <= set(AXES):
@@ -76,7 +77,7 @@ def plot_particles(particles: Particles, field: str | None, plane: str, body: st
     else:
         colours = {"c": values["array"], **limits, **style} if shown else {"color": values["facecolor"], **style}
         drawn = axes.scatter(*place.T, s=1, marker=",", linewidths=0, **colours)
-    return _finish(axes, drawn, shown, plane, particles.time)
+    return _finish(axes, drawn if colorbar else None, shown, plane, particles.time)
 
 
 class _Of(Mapping[str, np.ndarray]):
@@ -97,7 +98,7 @@ class _Of(Mapping[str, np.ndarray]):
         return len(self._fields)
 
 
-def plot_mesh(mesh: Mesh, field: str | None, ax: Any, style: dict[str, Any]) -> Any:
+def plot_mesh(mesh: Mesh, field: str | None, ax: Any, colorbar: bool, style: dict[str, Any]) -> Any:
     """Draws a field on the triangles of a 2-D mesh, or their edges."""
     if mesh.cells.shape[1] != 3:
         raise ValueError(f"{mesh.path}: a mesh of tetrahedra; draw it with to_pyvista, or with ParaView")
@@ -112,14 +113,14 @@ def plot_mesh(mesh: Mesh, field: str | None, ax: Any, style: dict[str, Any]) -> 
         drawn = axes.tripcolor(x, y, mesh.cells, facecolors=shown.values, **style)
     else:
         drawn = axes.tripcolor(x, y, mesh.cells, shown.values, **{"shading": "gouraud", **style})
-    return _finish(axes, drawn, shown, "xy", mesh.time)
+    return _finish(axes, drawn if colorbar else None, shown, "xy", mesh.time)
 
 
 def _finish(axes: Any, drawn: Any, shown: Scalar | None, plane: str, time: float) -> Any:
     axes.set(xlabel=f"{plane[0]} [m]", ylabel=f"{plane[1]} [m]", aspect="equal")
     if not np.isnan(time):
         axes.set_title(f"t = {time:.4g} s", fontsize="medium")
-    if shown is not None:
+    if drawn is not None and shown is not None:
         axes.figure.colorbar(drawn, ax=axes, label=_with_unit(shown.label, shown.unit), shrink=0.8)
     return axes
 

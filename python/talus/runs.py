@@ -127,7 +127,7 @@ class Run:
         return found
 
     def plot(self, field: str | None = None, time: float | None = None, *, on: str = "particles", plane: str | None = None,
-             body: str | int | None = None, ax: Any = None, **style: Any) -> Any:
+             body: str | int | None = None, ax: Any = None, colorbar: bool = True, **style: Any) -> Any:
         """Draws a field at a time and returns the Matplotlib axes; `ax.figure.savefig("a.png")` writes the picture.
 
         field  as in `talus render`: `displacement` (a vector by its length), `stress:xy` (a component), `stress` (its von Mises value),
@@ -137,7 +137,7 @@ class Run:
         plane  axes of the picture in 3-D, to the right and up, such as "xz"; default with the direction against gravity up
         body   only this body, by name or number
         ax     axes to draw into; default those of a new figure
-        style  options of Matplotlib, such as cmap, vmin, vmax
+        style  options of Matplotlib, such as cmap, vmin, vmax; colorbar=False leaves the colour bar out
 
         Raises Missing if there is no such field or body, FileNotFoundError without such files, MissingPackage without matplotlib.
         """
@@ -145,10 +145,10 @@ class Run:
         if on == "particles":
             particles = self._frame(self.particles, time)
             plane = plane or plane_of(self.summary.get("dimension", 2), self.scene)
-            return plot_particles(particles, field, plane, body, ax, style)
+            return plot_particles(particles, field, plane, body, ax, colorbar, style)
         if on != "mesh":
             raise ValueError(f"on={on!r}: particles or mesh")
-        return plot_mesh(self.mesh if field is None else self._frame(self.mesh_fields, time), field, ax, style)
+        return plot_mesh(self.mesh if field is None else self._frame(self.mesh_fields, time), field, ax, colorbar, style)
 
     def to_pyvista(self, time: float | None = None, on: str = "particles") -> Any:
         """Results at a time for PyVista: `run.to_pyvista().plot(scalars="pressure")`.

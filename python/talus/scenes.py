@@ -18,7 +18,9 @@ _NOT_PLAIN = {"true", "false", "yes", "no", "on", "off", "y", "n", "null"}  # wo
 
 
 def _is_list(value: Any) -> bool:
-    return isinstance(value, (Sequence, np.ndarray)) and not isinstance(value, (str, bytes)) and np.ndim(value) != 0 or value in ([], ())
+    if isinstance(value, np.ndarray):
+        return value.ndim > 0
+    return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
 
 
 def _scalar(value: Any) -> str:
