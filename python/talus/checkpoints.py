@@ -28,7 +28,8 @@ class Body(NamedTuple):
 
 class Checkpoint(Mapping[str, np.ndarray]):
     """A checkpoint (.h5): every array by its path, such as `particles/stress`, shape (rows,) or (rows, columns), in the type of the file.
-    A text is an array of uint8; `text` decodes it.  The file is open as long as the object lives, or until `close`; it can be used in a `with` statement.
+    A text is an array of uint8; `text` decodes it.  The file is open as long as the object lives, or until `close`; it can be used in a
+    `with` statement.
 
     Attributes: time [s], step, bodies, version, commit; `units` is {path: unit}.
 

@@ -45,7 +45,8 @@ class _VtkFile:
             raise UnknownFormat(f"{path}: not a {kind} with LZ4 blocks and 64-bit headers, as Talus writes it")
         self._start = len(text) + len(_MARK) + appended.find(b"_") + 1
         self.sections = {section: self._arrays(root, f"*/{place}") for section, place in (
-            ("whole", "FieldData"), ("points", "Piece/PointData"), ("cell_data", "Piece/CellData"), ("place", "Piece/Points"), ("cells", "Piece/Cells"))}
+            ("whole", "FieldData"), ("points", "Piece/PointData"), ("cell_data", "Piece/CellData"), ("place", "Piece/Points"),
+            ("cells", "Piece/Cells"))}
 
     @staticmethod
     def _arrays(root: tree.Element, place: str) -> dict[str, tree.Element]:
@@ -141,8 +142,8 @@ class Particles(_Fields):
         return f"<talus.Particles {self.path.name}: {', '.join(self)}>"
 
     def to_pandas(self, body: str | int | None = None) -> pandas.DataFrame:
-        """A DataFrame with the particles of all bodies or of one: `id` is the index, vectors and tensors are columns such as `velocity_x` and
-        `stress_xx`, and `attrs["units"]` is {column: unit}.  Needs pandas."""
+        """A DataFrame with the particles of all bodies or of one: `id` is the index, vectors and tensors are columns such as `velocity_x`
+        and `stress_xx`, and `attrs["units"]` is {column: unit}.  Needs pandas."""
         from .convert import to_pandas
         return to_pandas(self if body is None else self.of(body), self.units)
 

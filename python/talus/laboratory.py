@@ -24,9 +24,9 @@ Material = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 class MaterialTest(Table):
     """The response of one particle: columns by name, one row for the start and one for the end of each step.
 
-    Columns: `time` [s], of a laboratory test what is measured (such as `axial_strain` and `stress_difference` [Pa]), the deformation gradient
-    `F_xx` ..., the Cauchy stress `stress_xx` ... [Pa], tension positive, `p` (minus its mean) and `q` = sqrt(3 J2) [Pa], and the history
-    variables of the law.
+    Columns: `time` [s], of a laboratory test what is measured (such as `axial_strain` and `stress_difference` [Pa]), the deformation
+    gradient `F_xx` ..., the Cauchy stress `stress_xx` ... [Pa], tension positive, `p` (minus its mean) and `q` = sqrt(3 J2) [Pa], and the
+    history variables of the law.
 
     log  what the program printed; of a laboratory test the result beside closed forms
     """
@@ -54,9 +54,9 @@ class MaterialTest(Table):
 
 
 def drive(material: Material, path: Sequence[Mapping[str, Any]] | None = None, *, test: str | None = None, name: str | None = None,
-          initial_stress: Sequence[float] | None = None, pressure: float | None = None, strain: float | None = None, rate: float | None = None,
-          steps: int | None = None, set: Mapping[str, Any] | None = None, out: str | os.PathLike[str] | None = None,
-          program: str | os.PathLike[str] | None = None) -> MaterialTest:
+          initial_stress: Sequence[float] | None = None, pressure: float | None = None, strain: float | None = None,
+          rate: float | None = None, steps: int | None = None, set: Mapping[str, Any] | None = None,
+          out: str | os.PathLike[str] | None = None, program: str | os.PathLike[str] | None = None) -> MaterialTest:
     """Takes one particle of a material along a path, or through a laboratory test.
 
     material        the law and its parameters as a dictionary, as in `materials` of a scene; or a scene, as a dictionary or the path of its

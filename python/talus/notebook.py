@@ -46,8 +46,11 @@ def run_to_html(run: Run) -> str:
     cost = summary.get("cost", {})
     if "wall [s]" in cost:
         rows.append(_row("took", f"{_number(float(cost['wall [s]']))} s with {_number(cost.get('threads', '?'))} threads"))
-    results = [f"{what} ({count})" for what, count in run.contents().items() if count]
-    rows.append(_row("results", _listed(results)))
+    try:
+        results = escape(", ".join(f"{what} ({count})" for what, count in run.contents().items() if count))
+    except (OSError, FileError) as error:
+        results = escape(str(error))
+    rows.append(_row("results", results))
     for warning in run.warnings:
         rows.append(_row("warning", escape(warning)))
     title = escape(str(summary.get("title", run.folder.name)))

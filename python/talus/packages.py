@@ -33,5 +33,6 @@ def need(module: str, purpose: str) -> ModuleType:
         if error.name is None or not (module == error.name or module.startswith(error.name + ".")):
             raise  # the module is there, but something that it needs is not
         debian, pip = KNOWN[module]
-        where = f"install the Debian package {debian}, or pip install {pip}" if debian else f"pip install {pip} (Debian 12 has no package of it)"
+        install = f"pip install {pip}"
+        where = f"install the Debian package {debian}, or {install}" if debian else f"{install} (Debian 12 has no package of it)"
         raise MissingPackage(f"{pip}, which {purpose}, is not installed: {where}", name=error.name) from error

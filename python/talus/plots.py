@@ -15,7 +15,7 @@ from .rasters import Raster
 from .tables import PURE, Table
 
 _MOST_CIRCLES = 200_000  # above this number particles are drawn as points: circles would take minutes
-_OVERLAP = 1.4          # of the diameter of a circle to the side of the square or cube that it stands for
+_OVERLAP = 1.4          # diameter of a circle over the side of the square or cube that it stands for: a square lattice shows no gap
 _GRAVITY = re.compile(r"type:\s*gravity\b[^}]*?acceleration:\s*\[([^\]]*)\]", re.S)
 
 
@@ -41,7 +41,7 @@ def plane_of(dimension: int, scene: str) -> str:
 
 
 def diameters(fields: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Diameters of circles for particles [m], (n,): sides of squares or cubes of their volume, so much larger that no gap shows in between."""
+    """Diameters of circles for particles [m], (n,): sides of squares or cubes of their volume, times _OVERLAP."""
     dimension = 3 if np.ptp(fields["position"][:, 2]) > 0 else 2
     return _OVERLAP * np.asarray(fields["volume"], float) ** (1 / dimension)
 
@@ -69,8 +69,8 @@ def plot_particles(particles: Particles, field: str | None, plane: str, body: st
     limits = {name: style.pop(name) for name in ("vmin", "vmax") if name in style}
     if len(place) <= _MOST_CIRCLES and "volume" in fields:
         size = diameters(fields)[order]
-        drawn = axes.add_collection(collections.EllipseCollection(size, size, 0.0, units="xy", offsets=place, offset_transform=axes.transData,
-                                                                  linewidth=0, **values, **style))
+        drawn = axes.add_collection(collections.EllipseCollection(size, size, 0.0, units="xy", offsets=place,
+                                                                  offset_transform=axes.transData, linewidth=0, **values, **style))
         drawn.set_clim(limits.get("vmin"), limits.get("vmax"))
         axes.update_datalim([place.min(axis=0) - size.max(), place.max(axis=0) + size.max()])
         axes.autoscale_view()

@@ -70,8 +70,8 @@ def error_of(code: int, complaints: str, log: str, **more: Any) -> ProgramError:
 
 def call(words: Sequence[str | os.PathLike[str]], program: str | os.PathLike[str] | None = None) -> str:
     """Runs a command of the program to its end and returns what it prints.  Raises a ProgramError if it fails."""
-    told = subprocess.run([find_program(program), *words], stdin=subprocess.DEVNULL, capture_output=True, encoding="utf-8", errors="replace",
-                          check=False)
+    told = subprocess.run([find_program(program), *words], stdin=subprocess.DEVNULL, capture_output=True, encoding="utf-8",
+                          errors="replace", check=False)
     if told.returncode:
         raise error_of(told.returncode, told.stderr, told.stdout)
     return told.stdout

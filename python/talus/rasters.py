@@ -111,8 +111,8 @@ def _tags(data: bytes) -> dict[int, tuple[Any, ...]]:
 
 
 def _unpredicted(raw: bytes, rows: int, width: int) -> np.ndarray:
-    """Rows of floats from the floating-point predictor (Adobe Photoshop TIFF Technical Note 3): the bytes of a row are stored by significance,
-    the highest first, each less the one before."""
+    """Rows of floats from the floating-point predictor (Adobe Photoshop TIFF Technical Note 3): the bytes of a row are stored by
+    significance, the highest first, each less the one before."""
     planes = np.cumsum(np.frombuffer(raw, "u1").reshape(rows, 4 * width), axis=1, dtype="u1").reshape(rows, 4, width)
     return np.ascontiguousarray(planes.transpose(0, 2, 1)).view(">f4").reshape(rows, width).astype("f4")
 

@@ -119,8 +119,8 @@ class Run:
             with path.open("rb") as file:
                 return max(sum(line.endswith(b"\n") for line in file) - 1, 0)
         found = {name: rows(path) for name in ("history", "runout") if (path := self.folder / f"{name}.csv").exists()}
-        found |= {name: len(Series(path, Mesh)) for name, path in (("particles", self.folder / "particles.pvd"), ("rigid", self.folder / "rigid.pvd"),
-                                                                   ("mesh_fields", self.folder / "mesh.pvd")) if path.exists()}
+        series = {"particles": "particles.pvd", "rigid": "rigid.pvd", "mesh_fields": "mesh.pvd"}
+        found |= {name: len(Series(path, Mesh)) for name, file in series.items() if (path := self.folder / file).exists()}
         for name, files in (("maps", "maps/*.tif"), ("sections", "sections/*.csv"), ("checkpoints", "checkpoints/step_*.h5")):
             if number := len(list(self.folder.glob(files))):
                 found[name] = number
@@ -154,8 +154,8 @@ class Run:
         """Results at a time for PyVista: `run.to_pyvista().plot(scalars="pressure")`.
 
         time  that of the nearest file [s]; default the last
-        on    "particles": a PolyData; "mesh": an UnstructuredGrid with the fields of outputs.mesh, if the run has them; "rigid": the surfaces
-              of rigid bodies
+        on    "particles": a PolyData; "mesh": an UnstructuredGrid with the fields of outputs.mesh, if the run has them; "rigid": the
+              surfaces of rigid bodies
 
         Raises MissingPackage without PyVista.
         """
@@ -195,7 +195,8 @@ def open_run(folder: str | os.PathLike[str]) -> Run:
 
 
 class Sweep:
-    """The folder of a parameter study (`talus sweep`): `table` has a row for each case; `run(k)` opens the results of case k, as numbered in the column `case`."""
+    """The folder of a parameter study (`talus sweep`): `table` has a row for each case; `run(k)` opens the results of case k, as numbered
+    in the column `case`."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
@@ -213,4 +214,5 @@ class Sweep:
         return self.table["status"] == "done"
 
     def run(self, case: int) -> Run:
+        """The results of a case."""
         return Run(self.folder / f"case_{case:04}")

@@ -104,7 +104,8 @@ def write_scene(scene: Mapping[str, Any], path: Path) -> Path:
     """Writes a scene, and replaces only a file that this function wrote.  Raises FileExistsError if another file has this name."""
     text = HEADING + to_yaml(scene)
     if path.exists() and not path.read_text(encoding="utf-8", errors="replace").startswith(HEADING):
-        raise FileExistsError(f"{path} was not written by this package and is not replaced: move it, or choose another folder for the results")
+        raise FileExistsError(f"{path} was not written by this package and is not replaced: "
+                              "move it, or choose another folder for the results")
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")
     return path

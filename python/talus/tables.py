@@ -24,8 +24,8 @@ def _as_text(entry: str) -> str:
 
 
 class Table(Mapping[str, np.ndarray]):
-    """Columns of a .csv by name: `table["kinetic"]` has one number per row; empty entries are nan.  A column with entries that are not numbers is
-    an array of str.
+    """Columns of a .csv by name: `table["kinetic"]` has one number per row; empty entries are nan.  A column with entries that are not
+    numbers is an array of str.
 
     path    path of the file
     units   {column: unit}

@@ -16,7 +16,8 @@ sys.path.insert(0, str(ROOT / "python"))
 import talus  # noqa: E402
 
 RUBBER = {"law": "neo_hookean", "density": 1000, "youngs_modulus": 1e6, "poisson_ratio": 0.25}
-SOIL = {"name": "soil", "law": "mohr_coulomb", "density": 2000, "youngs_modulus": 2e7, "poisson_ratio": 0.3, "friction_angle": 30, "cohesion": 10e3}
+SOIL = {"name": "soil", "law": "mohr_coulomb", "density": 2000, "youngs_modulus": 2e7, "poisson_ratio": 0.3, "friction_angle": 30,
+        "cohesion": 10e3}
 LAME = 0.4e6  # Pa, both of RUBBER: E nu / ((1 + nu) (1 - 2 nu)) and E / (2 (1 + nu))
 
 
@@ -65,7 +66,8 @@ class Drive(unittest.TestCase):
 
     def test_a_scene_names_its_material_and_set_changes_it(self):
         scene = str(ROOT / "scenes/slope_failure_2d/scene.yaml")
-        weak, strong = (talus.drive(scene, test="simple_shear", pressure=1e5, set={"materials[0].cohesion": c})["shear_stress"].max() for c in (5e3, 50e3))
+        weak, strong = (talus.drive(scene, test="simple_shear", pressure=1e5, set={"materials[0].cohesion": cohesion})["shear_stress"].max()
+                        for cohesion in (5e3, 50e3))
         self.assertLess(weak, strong)
         both = {"title": "Two", "dimension": 2, "mesh": {"grid": {"low": [0, 0], "high": [1, 1], "cells": [2, 2]}},
                 "materials": [SOIL, {**RUBBER, "name": "rubber"}], "time": {"end": 1},

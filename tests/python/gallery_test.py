@@ -23,7 +23,8 @@ class Gallery(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for script in SCRIPTS:
                 picture = Path(folder) / f"{script.stem}.png"
-                told = subprocess.run([sys.executable, "-B", script, "--out", picture], cwd=folder, capture_output=True, text=True, check=False)
+                words = [sys.executable, "-B", script, "--out", picture]
+                told = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
                 self.assertEqual((told.returncode, told.stderr), (0, ""), script.name)
                 self.assertIn(str(picture), told.stdout)
                 self.assertGreater(matplotlib.image.imread(picture).std(), 0.02, f"{script.name} draws nothing")

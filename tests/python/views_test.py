@@ -3,6 +3,7 @@
 
 Usage: views_test.py PROGRAM, the built talus.  Tests of packages that are not installed are skipped; PyVista is a stand-in.
 """
+import importlib
 import os
 import sys
 import tempfile
@@ -185,14 +186,16 @@ class Pictures(OfRuns):
         depth = [last[(last[:, (0, 2)] == shown).all(axis=1), 1] for shown in (place[0], place[-1])]
         self.assertEqual((depth[0].max(), depth[1].min()), (last[:, 1].max(), last[:, 1].min()))
         for scene, dimension, plane in (("gravity", 2, "xy"), ("loads:\n- type: gravity\n  acceleration: [0, 0, -9.81]\n", 3, "xz"),
-                                        ("{type: gravity, acceleration: [0, -9.81, 0]}", 3, "xy"), ("{type: gravity, acceleration: [a, b, c]}", 3, "xy")):
+                                        ("{type: gravity, acceleration: [0, -9.81, 0]}", 3, "xy"),
+                                        ("{type: gravity, acceleration: [a, b, c]}", 3, "xy")):
             self.assertEqual(plane_of(dimension, scene), plane)
 
     def test_values_of_fields_are_those_of_talus_render(self):
         stress = np.array([[3.0, 0, 0, 0, 0, 0], [0, 0, 0, 2, 0, 0]])
         np.testing.assert_allclose(talus.von_mises(stress), [3, 2 * np.sqrt(3)])
         last = self.flat.particles[-1]
-        for name, wanted in (("pressure", -last["stress"][:, :3].mean(axis=1)), ("F:yx", last["F"][:, 3]), ("velocity:x", last["velocity"][:, 0])):
+        for name, wanted in (("pressure", -last["stress"][:, :3].mean(axis=1)), ("F:yx", last["F"][:, 3]),
+                             ("velocity:x", last["velocity"][:, 0])):
             drawn = np.asarray(last.plot(name).collections[0].get_array())
             np.testing.assert_allclose(np.sort(drawn), np.sort(wanted), rtol=1e-6, err_msg=name)
 
@@ -218,9 +221,12 @@ class Pictures(OfRuns):
         self.assertEqual((image.origin, image.get_cmap().name), ("upper", "magma"))
 
     def test_what_cannot_be_drawn_is_named(self):
-        for words, kind, given in (("did you mean velocity", talus.Missing, {"field": "velocty"}), ("no component of velocity xx", talus.Missing, {"field": "velocity:xx"}),
-                                   ("name a component, such as F:xx", talus.Missing, {"field": "F"}), ("no body pile", talus.Missing, {"body": "pile"}),
-                                   ("particles or mesh", ValueError, {"on": "cells"}), ("two different letters", ValueError, {"plane": "xx"})):
+        for words, kind, given in (("did you mean velocity", talus.Missing, {"field": "velocty"}),
+                                   ("no component of velocity xx", talus.Missing, {"field": "velocity:xx"}),
+                                   ("name a component, such as F:xx", talus.Missing, {"field": "F"}),
+                                   ("no body pile", talus.Missing, {"body": "pile"}),
+                                   ("particles or mesh", ValueError, {"on": "cells"}),
+                                   ("two different letters", ValueError, {"plane": "xx"})):
             with self.assertRaisesRegex(kind, words):
                 self.flat.plot(**given)
         with self.assertRaisesRegex(FileNotFoundError, "outputs.mesh"):
@@ -231,20 +237,21 @@ class Pictures(OfRuns):
 
 class Packages(OfRuns):
     def test_a_missing_package_is_named_with_its_debian_package(self):
-        calls = {"pandas": lambda: self.flat.history.to_pandas(), "xarray": lambda: self.flat.particles.to_xarray(), "pyvista": lambda: self.flat.to_pyvista(),
-                 "matplotlib.pyplot": lambda: self.flat.history.plot(), "lz4.block": lambda: self.flat.particles[0]["id"],
-                 "h5py": lambda: talus.Checkpoint(next(self.flat.folder.glob("checkpoints/*.h5"), self.flat.folder / "summary.json"))}
-        wanted = {"pandas": "python3-pandas", "xarray": "python3-xarray", "pyvista": "pip install pyvista", "matplotlib.pyplot": "python3-matplotlib",
-                  "lz4.block": "python3-lz4", "h5py": "python3-h5py"}
-        for module, call in calls.items():
-            def absent(name, *rest, wanted=module):
-                if name == wanted:
-                    raise ModuleNotFoundError(f"No module named {name!r}", name=name.partition(".")[0])
-                return __import__("builtins").__import__(name, *rest)
-            with mock.patch("talus.packages.importlib.import_module", side_effect=absent):
-                with self.assertRaisesRegex(talus.MissingPackage, wanted[module]) as caught:
-                    call()
-                self.assertIsInstance(caught.exception, ImportError)
+        run = self.flat
+        calls = {"pandas": (run.history.to_pandas, "python3-pandas"), "xarray": (run.particles.to_xarray, "python3-xarray"),
+                 "pyvista": (run.to_pyvista, "pip install pyvista"), "matplotlib": (run.history.plot, "python3-matplotlib"),
+                 "lz4": (lambda: run.particles[0]["id"], "python3-lz4"),
+                 "h5py": (lambda: talus.Checkpoint(run.folder / "summary.json"), "python3-h5py")}
+        for module, (call, package) in calls.items():
+            there = importlib.import_module
+
+            def without(name, gone=module):
+                if name.partition(".")[0] == gone:
+                    raise ModuleNotFoundError(f"No module named {gone!r}", name=gone)
+                return there(name)
+            with mock.patch("importlib.import_module", without), self.assertRaisesRegex(talus.MissingPackage, package) as caught:
+                call()
+            self.assertIsInstance(caught.exception, ImportError)
 
     def test_pyvista_gets_points_cells_and_fields(self):
         stand_in = types.ModuleType("pyvista")
@@ -268,7 +275,8 @@ class Packages(OfRuns):
 class Notebooks(OfRuns):
     def test_a_run_shows_its_state_and_is_safe(self):
         shown = self.flat._repr_html_()
-        for words in ("Blocks &lt;leave&gt; &amp; fall", "<b>done</b>", "stays", f"particles ({len(self.flat.particles)})", f"history ({self.flat.history.rows})"):
+        for words in ("Blocks &lt;leave&gt; &amp; fall", "<b>done</b>", "stays", f"particles ({len(self.flat.particles)})",
+                      f"history ({self.flat.history.rows})"):
             self.assertIn(words, shown)
         self.assertNotIn("<leave>", shown)
         for warning in self.flat.warnings:
