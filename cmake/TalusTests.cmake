@@ -94,9 +94,15 @@ endfunction()
 # What a run writes, read by others, and by the module that comes with Talus.
 function(talus_python_tests)
   add_test(NAME read_back COMMAND ${TALUS_PYTHON} ${PROJECT_SOURCE_DIR}/tests/app/read_back.py $<TARGET_FILE:talus>)
-  add_test(NAME python.reader COMMAND ${TALUS_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/python/reader_test.py $<TARGET_FILE:talus>)
-  set_tests_properties(read_back python.reader PROPERTIES LABELS unit TIMEOUT 120)
-  set_tests_properties(python.reader PROPERTIES COST 100)   # it takes long: not last, when a core has nothing else to do
+  set_tests_properties(read_back PROPERTIES LABELS unit TIMEOUT 120)
+  file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/python/*_test.py)
+  foreach(script ${scripts})
+    cmake_path(GET script STEM name)
+    string(REGEX REPLACE "_test$" "" name ${name})
+    add_test(NAME python.${name} COMMAND ${TALUS_PYTHON} -B ${script} $<TARGET_FILE:talus>)
+    set_tests_properties(python.${name} PROPERTIES LABELS unit TIMEOUT 300 ENVIRONMENT "OMP_WAIT_POLICY=passive;MPLBACKEND=Agg")
+  endforeach()
+  set_tests_properties(python.reader python.gallery PROPERTIES COST 100)   # they take long: not last, when a core has nothing else to do
 endfunction()
 
 # The package of the programs at hand, looked into and run from where it is unpacked.  Nobody packs programs with sanitizers.

@@ -27,6 +27,9 @@ docs() {
   render block --outline start --out docs/images/first_scene.png
   build/talus fos benchmarks/factor_of_safety/acads.yaml --from 0.9 --to 1.1 --width 0.025 --out runs/acads_fos
   cp runs/acads_fos/mechanism.png docs/images/fos_mechanism.png
+  for script in python/examples/gallery/*.py; do
+    TALUS=build/talus /usr/bin/python3 -B "$script" --out "docs/images/python_$(basename "$script" .py).png"
+  done
 }
 
 [ "$*" = docs ] && { docs; exit; }

@@ -1,27 +1,47 @@
-"""Reads the results of Talus: runs, particles, meshes, histories, checkpoints, parameter studies.
+"""Runs the program Talus and reads its results: runs, particles, meshes, histories, maps, checkpoints, tests of materials.
 
     import talus
-    run = talus.Run("runs/slope")
+    run = talus.run("scene.yaml", set={"time.end": 2}, out="runs/slope", progress=True)
+    run = talus.open("runs/slope")                            # the same results, later
     run.history["kinetic"], run.history.units["kinetic"]      # (rows,), "J"
+    run.history.plot("kinetic", "plastic")
     last = run.particles[-1]
     last.time, last["position"], last.units["position"]       # s, (particles, 3), "m"
     last.of("clay")["stress"]                                 # of one body: (its particles, 6)
+    last.to_pandas(), run.particles.to_xarray("velocity")
+    run.plot("displacement", time=2.5)
     run.checkpoints[-1]["particles/velocity"]                 # in double precision, with its digest checked
+    talus.drive({"law": "von_mises", ...}, test="uniaxial_strain_rate")
 
 The package is one folder that can be copied.  It needs numpy, h5py to read checkpoints, and lz4 to read particles and meshes
-(Debian: python3-numpy, python3-h5py, python3-lz4).  Units are SI; a pure number has the unit "-".  Symmetric tensors have six components,
+(Debian: python3-numpy, python3-h5py, python3-lz4); pandas, xarray, matplotlib and PyVista are used where they are installed, and
+MissingPackage names them where they are not.  Units are SI; a pure number has the unit "-".  Symmetric tensors have six components,
 xx, yy, zz, xy, yz, xz (`tensors` makes matrices of them), others nine, by rows.  Vectors of particle and mesh files have three components
-in two dimensions too.  The package never writes files.
+in two dimensions too.  Only `run`, `resume` and `drive` write files, all by the program.
 
 Errors in a file are FileErrors with its name: `Damaged`, or `UnknownFormat` for a file of another version.  A missing file is a
-FileNotFoundError; a missing field, column or body is a `Missing` error, which lists the existing ones.
+FileNotFoundError; a missing field, column or body is a `Missing` error, which lists the existing ones.  An error of the program is a
+`ProgramError`: SceneError, RunFailed or EnvironmentFailure, with the messages and their places.
 """
 from .checkpoints import Body, CHECKPOINT_FORMATS, Checkpoint
 from .comparison import Comparison, Difference, compare, tensors
-from .errors import Damaged, FileError, Missing, UnknownFormat
+from .components import von_mises
+from .convert import to_pandas
+from .errors import (Damaged, EnvironmentFailure, FileError, Message, Missing, MissingPackage, ProgramError, RunFailed, SceneError,
+                     UnknownFormat)
 from .fields import Mesh, Particles, Series
+from .laboratory import TESTS, MaterialTest, drive
+from .program import find_program, manual, schema
+from .rasters import Maps, Raster
+from .running import Progress, check, resume, run
 from .runs import Run, Sweep
+from .runs import open_run as open
+from .scenes import to_yaml
 from .tables import PURE, Table
 
-__all__ = ["Body", "CHECKPOINT_FORMATS", "Checkpoint", "Comparison", "Damaged", "Difference", "FileError", "Mesh", "Missing", "PURE", "Particles", "Run", "Series", "Sweep", "Table", "UnknownFormat",
-           "compare", "tensors"]
+__version__ = "0.1.0"  # that of the program (CMakeLists.txt)
+
+__all__ = ["Body", "CHECKPOINT_FORMATS", "Checkpoint", "Comparison", "Damaged", "Difference", "EnvironmentFailure", "FileError", "Maps",
+           "MaterialTest", "Mesh", "Message", "Missing", "MissingPackage", "PURE", "Particles", "Progress", "ProgramError", "Raster", "Run",
+           "RunFailed", "SceneError", "Series", "Sweep", "TESTS", "Table", "UnknownFormat", "check", "compare", "drive", "find_program",
+           "manual", "open", "resume", "run", "schema", "tensors", "to_pandas", "to_yaml", "von_mises"]

@@ -10,6 +10,7 @@ import numpy as np
 
 from .digests import fits_digest
 from .errors import Damaged, Missing, UnknownFormat
+from .packages import need
 from .tables import PURE
 
 CHECKPOINT_FORMATS = (4, 5, 6, 7, 8)  # formats that Checkpoint reads
@@ -27,7 +28,8 @@ class Body(NamedTuple):
 
 class Checkpoint(Mapping[str, np.ndarray]):
     """A checkpoint (.h5): every array by its path, such as `particles/stress`, shape (rows,) or (rows, columns), in the type of the file.
-    A text is an array of uint8; `text` decodes it.  The file is open as long as the object lives, or until `close`; it can be used in a `with` statement.
+    A text is an array of uint8; `text` decodes it.  The file is open as long as the object lives, or until `close`; it can be used in a
+    `with` statement.
 
     Attributes: time [s], step, bodies, version, commit; `units` is {path: unit}.
 
@@ -36,7 +38,7 @@ class Checkpoint(Mapping[str, np.ndarray]):
     """
 
     def __init__(self, path: str | os.PathLike[str], check: bool = True) -> None:
-        import h5py
+        h5py = need("h5py", "reads checkpoints")
         self.path, self._check = Path(path), check
         if not self.path.exists():
             raise FileNotFoundError(f"{self.path} is not there")
@@ -57,10 +59,15 @@ class Checkpoint(Mapping[str, np.ndarray]):
         self.time, self.step = float(self["clock/time"][0]), int(self["clock/step"][0])
         self.dimension: int = self._file["particles/position"].shape[1]
         self.units = {name: self._unit(name) for name in self._paths}
-        self.bodies = [Body(*(self.text(f"recorder/bodies/{b}/{key}") for key in ("name", "material", "law")),
-                            *(int(self[f"bodies/{b}/{key}"][0]) for key in ("begin", "end"))) for b in range(int(self["bodies/count"][0]))]
+        self.bodies = [self._body(b) for b in range(int(self["bodies/count"][0]))]
+
+    def _body(self, number: int) -> Body:
+        name, material, law = (self.text(f"recorder/bodies/{number}/{key}") for key in ("name", "material", "law"))
+        begin, end = (int(self[f"bodies/{number}/{key}"][0]) for key in ("begin", "end"))
+        return Body(name, material, law, begin, end)
 
     def close(self) -> None:
+        """Closes the file; arrays that were read stay."""
         self._file.close()
 
     def __enter__(self) -> Checkpoint:
@@ -108,7 +115,7 @@ class Checkpoint(Mapping[str, np.ndarray]):
         if body is None:
             return fields
         names = [own.name for own in self.bodies]
-        number = names.index(body) if body in names else body
+        number = names.index(body) if isinstance(body, str) and body in names else body
         if not isinstance(number, int) or not 0 <= number < len(names):
             raise Missing(self.path, "body", body, names)
         own, history = self.bodies[number], f"laws/history/{number}/"

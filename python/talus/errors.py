@@ -1,8 +1,12 @@
-"""Errors of files, and of names that are not in them."""
+"""Errors of files, of names that are not in them, of missing packages, and of the program."""
 from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from .runs import Run
 
 
 class FileError(Exception):
@@ -27,3 +31,50 @@ class Missing(KeyError):
 
     def __str__(self) -> str:
         return self.args[0]
+
+
+class MissingPackage(ImportError):
+    """A Python package that is not installed; the text names the package of Debian or of pip."""
+
+
+class Message(NamedTuple):
+    """An error or a warning of the program, with its place in the input.  Lines and columns count from 1; 0 means unknown."""
+
+    kind: str    #: "error" or "warning"
+    file: str    #: file, or the option `--set key=value`; empty if unknown
+    line: int
+    column: int
+    key: str     #: key of the scene, such as `materials[0] "clay".density`; empty if unknown
+    text: str    #: what was found, and what would be right
+    source: str  #: text of the line; empty if unknown
+
+
+class ProgramError(RuntimeError):
+    """The program ended with an error; the text is what it said.
+
+    code      exit code of the program; negative: the number of the signal that killed it
+    messages  the errors and warnings, each with its place
+    log       what the program had printed before
+    run       results so far, for a run that began; otherwise None
+    """
+
+    def __init__(self, text: str, code: int, messages: Sequence[Message] = (), log: str = "", run: Run | None = None) -> None:
+        super().__init__(text)
+        self.code, self.messages, self.log, self.run = code, list(messages), log, run
+
+    @property
+    def errors(self) -> list[Message]:
+        """The messages that are errors."""
+        return [message for message in self.messages if message.kind == "error"]
+
+
+class SceneError(ProgramError, ValueError):
+    """Wrong input: a scene, a mesh or an option (exit code 2).  Nothing was run."""
+
+
+class RunFailed(ProgramError):
+    """A run or a test that failed (exit code 1); `run` has the results so far."""
+
+
+class EnvironmentFailure(ProgramError):
+    """A failure of disk, memory or display, or a folder that must not be replaced (exit code 3)."""

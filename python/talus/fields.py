@@ -5,12 +5,17 @@ import os
 import xml.etree.ElementTree as tree
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .errors import Damaged, Missing, UnknownFormat
+from .packages import need
 from .tables import PURE
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 _NUMBERS = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "u1", "String": "u1"}
 _MARK = b'<AppendedData encoding="raw">'
@@ -40,7 +45,8 @@ class _VtkFile:
             raise UnknownFormat(f"{path}: not a {kind} with LZ4 blocks and 64-bit headers, as Talus writes it")
         self._start = len(text) + len(_MARK) + appended.find(b"_") + 1
         self.sections = {section: self._arrays(root, f"*/{place}") for section, place in (
-            ("whole", "FieldData"), ("points", "Piece/PointData"), ("cell_data", "Piece/CellData"), ("place", "Piece/Points"), ("cells", "Piece/Cells"))}
+            ("whole", "FieldData"), ("points", "Piece/PointData"), ("cell_data", "Piece/CellData"), ("place", "Piece/Points"),
+            ("cells", "Piece/Cells"))}
 
     @staticmethod
     def _arrays(root: tree.Element, place: str) -> dict[str, tree.Element]:
@@ -53,7 +59,7 @@ class _VtkFile:
 
     def read(self, array: tree.Element) -> np.ndarray:
         """Reads the header (blocks, size, size of the last, compressed sizes), then the blocks.  Shape (n,) or (n, components)."""
-        import lz4.block
+        block = need("lz4.block", "reads particle and mesh files")
         name = array.get("Name")
         try:
             with self.path.open("rb") as file:
@@ -61,11 +67,11 @@ class _VtkFile:
                 blocks, size, last = np.frombuffer(file.read(24), "<u8").tolist()
                 lengths = np.frombuffer(file.read(8 * blocks), "<u8", blocks).tolist()
                 sizes = [size] * (blocks - 1) + [last or size] if blocks else []
-                data = b"".join(lz4.block.decompress(file.read(length), uncompressed_size=full) for length, full in zip(lengths, sizes))
+                data = b"".join(block.decompress(file.read(length), uncompressed_size=full) for length, full in zip(lengths, sizes))
             values = np.frombuffer(data, _NUMBERS[array.get("type", "")])
             components = int(array.get("NumberOfComponents", "1"))
             return values.reshape(-1, components) if components > 1 else values
-        except (ValueError, OverflowError, MemoryError, KeyError, lz4.block.LZ4BlockError) as error:
+        except (ValueError, OverflowError, MemoryError, KeyError, block.LZ4BlockError) as error:
             raise Damaged(f"{self.path}: the field {name} is damaged ({error})") from error
 
     def time(self) -> float:
@@ -126,11 +132,37 @@ class Particles(_Fields):
 
     def of(self, body: str | int) -> dict[str, np.ndarray]:
         """All fields of the particles of one body, by its name or number.  Raises Missing if there is no such body."""
-        number = self.bodies.index(body) if body in self.bodies else body
+        number = self.bodies.index(body) if isinstance(body, str) and body in self.bodies else body
         if not isinstance(number, int):
             raise Missing(self.path, "body", body, self.bodies)
         own = self["body"] == number
         return {name: values[own] for name, values in self.items()}
+
+    def __repr__(self) -> str:
+        return f"<talus.Particles {self.path.name}: {', '.join(self)}>"
+
+    def to_pandas(self, body: str | int | None = None) -> pandas.DataFrame:
+        """A DataFrame with the particles of all bodies or of one: `id` is the index, vectors and tensors are columns such as `velocity_x`
+        and `stress_xx`, and `attrs["units"]` is {column: unit}.  Needs pandas."""
+        from .convert import to_pandas
+        return to_pandas(self if body is None else self.of(body), self.units)
+
+    def to_xarray(self, *fields: str) -> xarray.Dataset:
+        """A Dataset with the dimension `particle`, whose coordinate is `id`, and `axis`, `component` or `entry` for the components.
+        fields: default all.  Needs xarray."""
+        from .convert import particles_to_xarray
+        return particles_to_xarray(self, fields)
+
+    def to_pyvista(self) -> Any:
+        """A `pyvista.PolyData` with the fields as `point_data`.  Needs PyVista."""
+        from .convert import particles_to_pyvista
+        return particles_to_pyvista(self)
+
+    def plot(self, field: str | None = None, plane: str = "xy", body: str | int | None = None, ax: Any = None, colorbar: bool = True,
+             **style: Any) -> Any:
+        """Draws the particles and returns the axes; `Run.plot` has the arguments.  Needs matplotlib."""
+        from .plots import plot_particles
+        return plot_particles(self, field, plane, body, ax, colorbar, style)
 
 
 class Mesh(_Fields):
@@ -151,6 +183,25 @@ class Mesh(_Fields):
         if len(corners) != width * len(ends) or (np.diff(ends) != width).any():
             raise Damaged(f"{self.path}: {len(corners)} corners do not make {len(ends)} cells of one kind")
         self.cells = corners.reshape(len(ends), width)
+
+    def __repr__(self) -> str:
+        return f"<talus.Mesh {self.path.name}: {len(self.nodes)} nodes, {len(self.cells)} cells{''.join(', ' + name for name in self)}>"
+
+    def to_xarray(self, *fields: str) -> xarray.Dataset:
+        """A Dataset with the dimensions `node` and `cell`; `nodes_of_cell` has the nodes of each cell, `node_x` ... the places [m].
+        fields: default all.  Needs xarray."""
+        from .convert import mesh_to_xarray
+        return mesh_to_xarray(self, fields)
+
+    def to_pyvista(self) -> Any:
+        """A `pyvista.UnstructuredGrid` with the fields as `point_data` and `cell_data`.  Needs PyVista."""
+        from .convert import mesh_to_pyvista
+        return mesh_to_pyvista(self)
+
+    def plot(self, field: str | None = None, ax: Any = None, colorbar: bool = True, **style: Any) -> Any:
+        """Draws a field on a 2-D mesh, or without a field its edges, and returns the axes.  Needs matplotlib."""
+        from .plots import plot_mesh
+        return plot_mesh(self, field, ax, colorbar, style)
 
 
 class Series(Sequence[Any]):
@@ -180,3 +231,15 @@ class Series(Sequence[Any]):
         if not self.paths:
             raise Missing(self.path, "file at", time, [])
         return self[int(np.abs(self.times - time).argmin())]
+
+    def __repr__(self) -> str:
+        return f"<talus.Series {self.path.name}: {len(self)} files>"
+
+    def to_xarray(self, *fields: str) -> xarray.Dataset:
+        """All files as one Dataset, with the dimension `time` [s] first.  Needs xarray.
+
+        Particles are matched by their ids: a particle that is absent from a file is nan there.  All values of the fields are in memory
+        then: name the fields that you need (default all).
+        """
+        from .convert import series_to_xarray
+        return series_to_xarray(self, fields)

@@ -11,6 +11,7 @@ import numpy as np
 from .checkpoints import Checkpoint
 from .errors import Damaged
 from .fields import Mesh, Particles, Series
+from .rasters import Maps
 from .tables import Table
 
 _BEFORE_THE_END = "the run did not end"  # app/run/summary.hpp
@@ -24,10 +25,14 @@ def _written(path: Path, what: str) -> Path:
 
 
 class Run:
-    """A results folder.  For a run in progress, or a killed one, it shows the results so far."""
+    """A results folder.  For a run in progress, or a killed one, it shows the results so far.
 
-    def __init__(self, folder: str | os.PathLike[str]) -> None:
-        self.folder = Path(folder)
+    folder  path of the folder
+    log     what the program printed, if `talus.run` or `talus.resume` made this object; otherwise empty
+    """
+
+    def __init__(self, folder: str | os.PathLike[str], log: str = "") -> None:
+        self.folder, self.log = Path(folder), log
         if not self.folder.is_dir():
             raise FileNotFoundError(f"{self.folder} is no folder of results")
 
@@ -52,6 +57,11 @@ class Run:
         return [body["name"] for body in self.summary.get("bodies", [])] if (self.folder / "summary.json").exists() else []
 
     @property
+    def warnings(self) -> list[str]:
+        """The warnings of the run."""
+        return list(self.summary.get("warnings", []))
+
+    @property
     def scene(self) -> str:
         """The text of the scene, with the changes by `--set` as comments at its end."""
         return (self.folder / "scene.yaml").read_text(encoding="utf-8")
@@ -71,6 +81,13 @@ class Run:
         return Table(self.folder / "sections" / f"{name}.csv")
 
     @property
+    def maps(self) -> Maps:
+        """The maps of the run-out (3-D) by name, each read when it is asked for."""
+        _written(self.folder / "maps", "maps (outputs.runout, in 3-D)")
+        heads = [name.removeprefix("front_") for name in self.runout if name.startswith("front_")]
+        return Maps(self.folder / "maps", [name for name in heads if name != "elevation"])
+
+    @property
     def particles(self) -> Series:
         """Particle files: a series of `Particles`."""
         bodies = self.bodies
@@ -87,13 +104,99 @@ class Run:
         return Series(_written(self.folder / "mesh.pvd", "files of fields on the mesh (outputs.mesh)"), Mesh)
 
     @property
+    def rigid(self) -> Series:
+        """Surfaces of the rigid bodies: a series of `Mesh`."""
+        return Series(_written(self.folder / "rigid.pvd", "rigid bodies (rigid of the scene, with outputs.particles)"), Mesh)
+
+    @property
     def checkpoints(self) -> list[Checkpoint]:
         """The existing checkpoints, in the order of their steps."""
         return [Checkpoint(path) for path in sorted((self.folder / "checkpoints").glob("step_*.h5"))]
 
+    def contents(self) -> dict[str, int]:
+        """The results that exist: {property: number of rows, files or maps}."""
+        def rows(path: Path) -> int:
+            with path.open("rb") as file:
+                return max(sum(line.endswith(b"\n") for line in file) - 1, 0)
+        found = {name: rows(path) for name in ("history", "runout") if (path := self.folder / f"{name}.csv").exists()}
+        series = {"particles": "particles.pvd", "rigid": "rigid.pvd", "mesh_fields": "mesh.pvd"}
+        found |= {name: len(Series(path, Mesh)) for name, file in series.items() if (path := self.folder / file).exists()}
+        for name, files in (("maps", "maps/*.tif"), ("sections", "sections/*.csv"), ("checkpoints", "checkpoints/step_*.h5")):
+            if number := len(list(self.folder.glob(files))):
+                found[name] = number
+        return found
+
+    def plot(self, field: str | None = None, time: float | None = None, *, on: str = "particles", plane: str | None = None,
+             body: str | int | None = None, ax: Any = None, colorbar: bool = True, **style: Any) -> Any:
+        """Draws a field at a time and returns the Matplotlib axes; `ax.figure.savefig("a.png")` writes the picture.
+
+        field  as in `talus render`: `displacement` (a vector by its length), `stress:xy` (a component), `stress` (its von Mises value),
+               `pressure`; default the particles in grey, or the edges of the mesh
+        time   that of the nearest file [s]; default the last
+        on     "particles", or "mesh" for a field of outputs.mesh of a 2-D run
+        plane  axes of the picture in 3-D, to the right and up, such as "xz"; default with the direction against gravity up
+        body   only this body, by name or number
+        ax     axes to draw into; default those of a new figure
+        style  options of Matplotlib, such as cmap, vmin, vmax; colorbar=False leaves the colour bar out
+
+        Raises Missing if there is no such field or body, FileNotFoundError without such files, MissingPackage without matplotlib.
+        """
+        from .plots import plane_of, plot_mesh, plot_particles
+        if on == "particles":
+            particles = self._frame(self.particles, time)
+            plane = plane or plane_of(self.summary.get("dimension", 2), self.scene)
+            return plot_particles(particles, field, plane, body, ax, colorbar, style)
+        if on != "mesh":
+            raise ValueError(f"on={on!r}: particles or mesh")
+        return plot_mesh(self.mesh if field is None else self._frame(self.mesh_fields, time), field, ax, colorbar, style)
+
+    def to_pyvista(self, time: float | None = None, on: str = "particles") -> Any:
+        """Results at a time for PyVista: `run.to_pyvista().plot(scalars="pressure")`.
+
+        time  that of the nearest file [s]; default the last
+        on    "particles": a PolyData; "mesh": an UnstructuredGrid with the fields of outputs.mesh, if the run has them; "rigid": the
+              surfaces of rigid bodies
+
+        Raises MissingPackage without PyVista.
+        """
+        if on == "mesh" and not (self.folder / "mesh.pvd").exists():
+            return self.mesh.to_pyvista()
+        series = {"particles": lambda: self.particles, "mesh": lambda: self.mesh_fields, "rigid": lambda: self.rigid}
+        if on not in series:
+            raise ValueError(f"on={on!r}: particles, mesh or rigid")
+        return self._frame(series[on](), time).to_pyvista()
+
+    @staticmethod
+    def _frame(series: Series, time: float | None) -> Any:
+        if not len(series):
+            raise FileNotFoundError(f"{series.path} lists no file yet")
+        return series[-1] if time is None else series.at(time)
+
+    def __repr__(self) -> str:
+        status = self.status if (self.folder / "summary.json").exists() else "no summary"
+        return f"<talus.Run {self.folder}: {status}>"
+
+    def _repr_html_(self) -> str:
+        from .notebook import run_to_html
+        return run_to_html(self)
+
+
+def open_run(folder: str | os.PathLike[str]) -> Run:
+    """Opens the results of a run.  Files are read when they are asked for, so this costs nothing.
+
+    folder  the results folder
+
+    Raises FileNotFoundError if there is no such folder, or if it has neither a summary nor a history.
+    """
+    run = Run(folder)
+    if not any((run.folder / name).exists() for name in ("summary.json", "history.csv", "progress.json")):
+        raise FileNotFoundError(f"{run.folder} holds no results of a run (no summary.json)")
+    return run
+
 
 class Sweep:
-    """The folder of a parameter study (`talus sweep`): `table` has a row for each case; `run(k)` opens the results of case k, as numbered in the column `case`."""
+    """The folder of a parameter study (`talus sweep`): `table` has a row for each case; `run(k)` opens the results of case k, as numbered
+    in the column `case`."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
@@ -111,4 +214,5 @@ class Sweep:
         return self.table["status"] == "done"
 
     def run(self, case: int) -> Run:
+        """The results of a case."""
         return Run(self.folder / f"case_{case:04}")

@@ -5,10 +5,15 @@ import csv
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .errors import Damaged, Missing
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 PURE = "-"  # the unit of a pure number
 
@@ -19,8 +24,8 @@ def _as_text(entry: str) -> str:
 
 
 class Table(Mapping[str, np.ndarray]):
-    """Columns of a .csv by name: `table["kinetic"]` has one number per row; empty entries are nan.  A column with entries that are not numbers is
-    an array of str.
+    """Columns of a .csv by name: `table["kinetic"]` has one number per row; empty entries are nan.  A column with entries that are not
+    numbers is an array of str.
 
     path    path of the file
     units   {column: unit}
@@ -55,6 +60,7 @@ class Table(Mapping[str, np.ndarray]):
 
     @property
     def rows(self) -> int:
+        """The number of rows."""
         return len(next(iter(self._columns.values())))
 
     @property
@@ -64,6 +70,41 @@ class Table(Mapping[str, np.ndarray]):
         for name, values in self._columns.items():
             whole[name] = values
         return whole
+
+    def to_pandas(self, index: str | None = None) -> pandas.DataFrame:
+        """A DataFrame with the columns of the table; `attrs["units"]` is {column: unit}.  Needs pandas.
+
+        index  column that becomes the index, such as "time"; default the number of the row
+        """
+        from .convert import table_to_pandas
+        return table_to_pandas(self, index)
+
+    def to_xarray(self, dimension: str | None = None) -> xarray.Dataset:
+        """A Dataset with a variable for each column; the attribute `units` of a variable is its unit.  Needs xarray.
+
+        dimension  column that becomes the dimension, such as "time"; default the number of the row
+        """
+        from .convert import table_to_xarray
+        return table_to_xarray(self, dimension)
+
+    def plot(self, *columns: str, x: str = "time", ax: Any = None, **style: Any) -> Any:
+        """Draws columns over `x`, one panel for each unit, and returns the axes: one, or an array of them.  Needs matplotlib.
+
+        columns  default the energies, which are the columns in J that are not zero
+        ax       axes to draw all columns into; default a new figure
+        style    options of `matplotlib.axes.Axes.plot`
+
+        Raises Missing if a column does not exist.
+        """
+        from .plots import plot_table
+        return plot_table(self, columns, x, ax, style)
+
+    def __repr__(self) -> str:
+        return f"<talus.{type(self).__name__} {self.path.name}: {self.rows} rows, {len(self)} columns>"
+
+    def _repr_html_(self) -> str:
+        from .notebook import table_to_html
+        return table_to_html(self)
 
 
 def _numbers(entries: Sequence[str]) -> np.ndarray:
