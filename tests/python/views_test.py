@@ -141,8 +141,8 @@ class Maps(OfRuns):
         self.assertEqual((raster.axes, raster.crs, np.asarray(raster).shape), (("x", "y"), "", raster.values.shape))
 
     def test_maps_that_are_not_there_or_damaged_are_named(self):
-        with self.assertRaisesRegex(talus.Missing, "no map thicknes: did you mean thickness"):
-            self.deep.maps["thicknes"]
+        with self.assertRaisesRegex(talus.Missing, "no map thickness_x: did you mean thickness"):
+            self.deep.maps["thickness_x"]
         with self.assertRaisesRegex(FileNotFoundError, "maps is not there: nothing has written maps"):
             self.flat.maps
         data = (self.deep.folder / "maps" / "thickness.tif").read_bytes()
