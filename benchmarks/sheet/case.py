@@ -9,6 +9,7 @@ TOPS = {0.0: "quick", 0.03: "full", 0.06: "full"}  # m by which the room is high
 FINEST = 0.025  # m, on one mesh: it takes ten minutes
 WATER_SIZES = {0.1: "quick", 0.05: "full"}
 BLADE_SIZES = {0.1: "quick", 0.05: "quick"}
+AROUND_EDGE = 2  # cells above the edge of the blade, below which material may have gone around it
 PUSHED = 0.8  # s, from which the sheet has its full velocity and the forces are averaged
 STILL = 1.0  # s, from which the water has its weight
 
@@ -79,7 +80,7 @@ def judge_blade(size, run, data):
     where = f"cells of {size:.3g} m"
     return [tools.Result(CASE, f"opening of a cut block, {where}", "m", opening(run, data), "reported", None, None, "none", run),
             tools.Result(CASE, f"particles that passed through the blade, {where}", "-",
-                         passed(run, "block", "blade", 2, data["edge of the blade at the end [m]"]), "at most", 0, 0, data["passing source"], run)]
+                         passed(run, "block", "blade", 2, data["edge of the blade at the end [m]"] + AROUND_EDGE * size), "at most", 0, 0, data["passing source"], run)]
 
 
 def draw_blade(figure, run, data):

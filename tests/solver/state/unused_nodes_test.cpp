@@ -58,7 +58,7 @@ Model<3> in_a_room(Index cells)
 TEST(UnusedNodes, TakeNoMemory)
 {
   const Model<3> m = in_a_room(20);
-  const auto& rows = dynamic_cast<const TransferOf<3, Projected<3>>&>(*m.transfer).rows();
+  const auto& rows = dynamic_cast<TransferOf<3, Projected<3>>&>(*m.transfer).rows();
   const auto share = [](const auto& array) {
     const Pages pages = pages_of(array);
     EXPECT_GT(pages.all, 100U) << "too few pages to say anything";
