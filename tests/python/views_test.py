@@ -74,12 +74,14 @@ class Pandas(OfRuns):
             history.to_pandas("tim")
 
     def test_particles_are_a_row_each_with_a_column_for_each_component(self):
-        last = self.flat.particles[-1]
+        last = self.deep.particles[-1]  # in 3-D, where no component is zero
         frame = last.to_pandas()
         self.assertEqual(frame.index.tolist(), last["id"].tolist())
-        np.testing.assert_array_equal(frame["stress_xy"].to_numpy(), last["stress"][:, 3])
-        np.testing.assert_array_equal(frame["F_yx"].to_numpy(), last["F"][:, 3])
+        for column, pair in enumerate(("xx", "yy", "zz", "xy", "yz", "xz")):  # docs/guide/results.md
+            np.testing.assert_array_equal(frame[f"stress_{pair}"].to_numpy(), last["stress"][:, column])
         self.assertEqual((frame.attrs["units"]["stress_xy"], frame.attrs["units"]["position_x"]), ("Pa", "m"))
+        last = self.flat.particles[-1]
+        np.testing.assert_array_equal(last.to_pandas()["F_yx"].to_numpy(), last["F"][:, 3])
         self.assertEqual(len(last.to_pandas("stays")), np.count_nonzero(last["body"] == 0))
         self.assertEqual(len(talus.to_pandas({"a": np.zeros(3), "stress": np.zeros((3, 4))}).columns), 5)
 
@@ -178,11 +180,12 @@ class Pictures(OfRuns):
         self.assertEqual(figure.axes, [axes])
 
     def test_in_3d_gravity_is_down_and_the_nearest_particle_on_top(self):
-        axes = self.deep.plot("displacement")
+        axes = self.deep.plot("position:y")
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("x [m]", "z [m]"))
         place = np.asarray(axes.collections[0].get_offsets())
         last = self.deep.particles[-1]["position"]
         # seen against y with x to the right and z up: the smallest y is nearest, and drawn last
+        self.assertEqual(sorted(zip(*place.T, axes.collections[0].get_array())), sorted((x, z, y) for x, y, z in last))
         depth = [last[(last[:, (0, 2)] == shown).all(axis=1), 1] for shown in (place[0], place[-1])]
         self.assertEqual((depth[0].max(), depth[1].min()), (last[:, 1].max(), last[:, 1].min()))
         for scene, dimension, plane in (("gravity", 2, "xy"), ("loads:\n- type: gravity\n  acceleration: [0, 0, -9.81]\n", 3, "xz"),
