@@ -32,6 +32,7 @@ FLAT = {
     "materials": [SAND],
     "bodies": [{"name": "stays", "material": "sand", "shape": {"type": "box", "low": [0.25, 0.25], "high": [0.75, 0.75]}},
                {"name": "leaves", "material": "sand", "shape": {"type": "box", "low": [1.25, 1], "high": [1.75, 1.5]}, "velocity": [5, 0]}],
+    "rigid": [{"name": "ball", "shape": {"type": "sphere", "centre": [1, 1.75], "radius": 0.15}, "mass": 10, "velocity": [0, 0.5]}],
     "on_exit": "delete", "time": {"end": 0.1},
     "outputs": {"particles": {"every": 0.02, "fields": ["velocity", "stress", "F"]}, "mesh": {"every": 0.05}, "history": {"every": 0.01}},
 }
@@ -263,8 +264,9 @@ class Packages(OfRuns):
         stand_in.CellType = types.SimpleNamespace(TRIANGLE="triangle", TETRA="tetra")
         with mock.patch.dict(sys.modules, {"pyvista": stand_in}):
             cloud, grid, bare = self.flat.to_pyvista(time=0), self.flat.to_pyvista(on="mesh"), self.deep.to_pyvista(on="mesh")
+            surface = self.flat.to_pyvista(on="rigid")
             with self.assertRaisesRegex(FileNotFoundError, "rigid bodies"):
-                self.flat.to_pyvista(on="rigid")
+                self.deep.to_pyvista(on="rigid")
         first, last = self.flat.particles[0], self.flat.mesh_fields[-1]
         np.testing.assert_array_equal(cloud.given[0], first["position"])
         np.testing.assert_array_equal(cloud.point_data["velocity"], first["velocity"])
@@ -273,6 +275,9 @@ class Packages(OfRuns):
         np.testing.assert_array_equal(grid.given[1], last.nodes)
         np.testing.assert_array_equal(grid.point_data["mass"], last["mass"])
         self.assertEqual((list(bare.given[0]), bare.point_data), (["tetra"], {}))
+        middle = surface.given[1].mean(axis=0)
+        np.testing.assert_allclose(middle[:2], (1, 1.75 + 0.5 * 0.1), atol=0.01)
+        np.testing.assert_allclose(surface.point_data["velocity"], np.broadcast_to((0, 0.5, 0), (len(surface.given[1]), 3)), atol=1e-6)
 
 
 class Notebooks(OfRuns):
