@@ -40,8 +40,8 @@ def find_program(program: str | os.PathLike[str] | None = None) -> Path:
     on_path = shutil.which("talus")
     built = _REPOSITORY / "build" / "talus"
     if on_path is None and not os.access(built, os.X_OK):
-        raise FileNotFoundError(f"the program talus was not found: set the environment variable TALUS to its path, add its folder to PATH, "
-                                f"or build it ({built}: make build)")
+        raise FileNotFoundError("the program talus was not found: set the environment variable TALUS to its path, add its folder to PATH, "
+                                "or build it (make build in a clone)")
     return Path(on_path).absolute() if on_path is not None else built
 
 

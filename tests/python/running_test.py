@@ -65,7 +65,8 @@ class Runs(OfTheProgram):
         # velocities are half a step before the time of the row
         half_step = of_dictionary.history["dt"][-1] / 2 * 9.81
         self.assertAlmostEqual(self.speed_at_the_end(of_dictionary), FREE_FALL, delta=2.1 * half_step)
-        of_file = talus.run("a.yaml", out=Path("b"), threads=1)
+        of_file = talus.run("a.yaml", out=Path("b"), threads=2)
+        self.assertEqual([run.summary["cost"]["threads"] for run in (of_dictionary, of_file)], [1, 2])
         np.testing.assert_array_equal(of_file.history.array, of_dictionary.history.array)
         self.assertIn("block", of_file.bodies)
         self.assertIn("gravity_work", of_file.log)
@@ -77,11 +78,12 @@ class Runs(OfTheProgram):
         self.assertAlmostEqual(run.history["momentum_block_x"][0] / run.history["mass"][0], 3.0, places=12)
 
     def test_results_go_to_the_folder_that_the_program_would_take(self):
-        for name, words in (("scene.yaml", "study/scene.yaml"), ("slope.yaml", "study/slope.yaml")):
-            (self.folder / "study").mkdir(exist_ok=True)
-            (self.folder / words).write_text(talus.to_yaml(SCENE), encoding="utf-8")
+        for words in ("valley/scene.yaml", "study/slope.yaml"):
+            path = self.folder / words
+            path.parent.mkdir()
+            path.write_text(talus.to_yaml(SCENE), encoding="utf-8")
             subprocess.run([self.program, "run", words, "--quiet"], check=True)
-            self.assertTrue((default_folder(words) / "summary.json").exists(), name)
+            self.assertTrue((default_folder(words) / "summary.json").exists(), words)
         self.assertEqual(talus.run(SCENE).folder, Path("runs/a_falling_block"))
 
     def test_errors_of_a_scene_have_their_places_and_nothing_is_run(self):

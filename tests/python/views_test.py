@@ -32,6 +32,7 @@ FLAT = {
     "materials": [SAND],
     "bodies": [{"name": "stays", "material": "sand", "shape": {"type": "box", "low": [0.25, 0.25], "high": [0.75, 0.75]}},
                {"name": "leaves", "material": "sand", "shape": {"type": "box", "low": [1.25, 1], "high": [1.75, 1.5]}, "velocity": [5, 0]}],
+    "rigid": [{"name": "ball", "shape": {"type": "sphere", "centre": [1, 1.75], "radius": 0.15}, "mass": 10, "velocity": [0, 0.5]}],
     "on_exit": "delete", "time": {"end": 0.1},
     "outputs": {"particles": {"every": 0.02, "fields": ["velocity", "stress", "F"]}, "mesh": {"every": 0.05}, "history": {"every": 0.01}},
 }
@@ -74,12 +75,14 @@ class Pandas(OfRuns):
             history.to_pandas("tim")
 
     def test_particles_are_a_row_each_with_a_column_for_each_component(self):
-        last = self.flat.particles[-1]
+        last = self.deep.particles[-1]  # in 3-D, where no component is zero
         frame = last.to_pandas()
         self.assertEqual(frame.index.tolist(), last["id"].tolist())
-        np.testing.assert_array_equal(frame["stress_xy"].to_numpy(), last["stress"][:, 3])
-        np.testing.assert_array_equal(frame["F_yx"].to_numpy(), last["F"][:, 3])
+        for column, pair in enumerate(("xx", "yy", "zz", "xy", "yz", "xz")):  # docs/guide/results.md
+            np.testing.assert_array_equal(frame[f"stress_{pair}"].to_numpy(), last["stress"][:, column])
         self.assertEqual((frame.attrs["units"]["stress_xy"], frame.attrs["units"]["position_x"]), ("Pa", "m"))
+        last = self.flat.particles[-1]
+        np.testing.assert_array_equal(last.to_pandas()["F_yx"].to_numpy(), last["F"][:, 3])
         self.assertEqual(len(last.to_pandas("stays")), np.count_nonzero(last["body"] == 0))
         self.assertEqual(len(talus.to_pandas({"a": np.zeros(3), "stress": np.zeros((3, 4))}).columns), 5)
 
@@ -178,11 +181,12 @@ class Pictures(OfRuns):
         self.assertEqual(figure.axes, [axes])
 
     def test_in_3d_gravity_is_down_and_the_nearest_particle_on_top(self):
-        axes = self.deep.plot("displacement")
+        axes = self.deep.plot("position:y")
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("x [m]", "z [m]"))
         place = np.asarray(axes.collections[0].get_offsets())
         last = self.deep.particles[-1]["position"]
         # seen against y with x to the right and z up: the smallest y is nearest, and drawn last
+        self.assertEqual(sorted(zip(*place.T, axes.collections[0].get_array())), sorted((x, z, y) for x, y, z in last))
         depth = [last[(last[:, (0, 2)] == shown).all(axis=1), 1] for shown in (place[0], place[-1])]
         self.assertEqual((depth[0].max(), depth[1].min()), (last[:, 1].max(), last[:, 1].min()))
         for scene, dimension, plane in (("gravity", 2, "xy"), ("loads:\n- type: gravity\n  acceleration: [0, 0, -9.81]\n", 3, "xz"),
@@ -260,8 +264,9 @@ class Packages(OfRuns):
         stand_in.CellType = types.SimpleNamespace(TRIANGLE="triangle", TETRA="tetra")
         with mock.patch.dict(sys.modules, {"pyvista": stand_in}):
             cloud, grid, bare = self.flat.to_pyvista(time=0), self.flat.to_pyvista(on="mesh"), self.deep.to_pyvista(on="mesh")
+            surface = self.flat.to_pyvista(on="rigid")
             with self.assertRaisesRegex(FileNotFoundError, "rigid bodies"):
-                self.flat.to_pyvista(on="rigid")
+                self.deep.to_pyvista(on="rigid")
         first, last = self.flat.particles[0], self.flat.mesh_fields[-1]
         np.testing.assert_array_equal(cloud.given[0], first["position"])
         np.testing.assert_array_equal(cloud.point_data["velocity"], first["velocity"])
@@ -270,6 +275,9 @@ class Packages(OfRuns):
         np.testing.assert_array_equal(grid.given[1], last.nodes)
         np.testing.assert_array_equal(grid.point_data["mass"], last["mass"])
         self.assertEqual((list(bare.given[0]), bare.point_data), (["tetra"], {}))
+        middle = surface.given[1].mean(axis=0)
+        np.testing.assert_allclose(middle[:2], (1, 1.75 + 0.5 * 0.1), atol=0.01)
+        np.testing.assert_allclose(surface.point_data["velocity"], np.broadcast_to((0, 0.5, 0), (len(surface.given[1]), 3)), atol=1e-6)
 
 
 class Notebooks(OfRuns):
