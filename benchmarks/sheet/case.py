@@ -40,15 +40,14 @@ def mean_force(run, after):
     return float(history["rigid_sheet_fx"][history["time"] > after].mean())
 
 
-def passed(run, body, sheet, area, above=0.0):
-    """Particles above a height [m] that began on one side of an upright sheet, and end on the other by more than a tenth of the mean distance of
-    particles, of a body with this area [m^2]."""
+def passed(run, body, sheet, size, above=0.0):
+    """Particles of a body above a height [m] that began a tenth of a cell or more from the plane of an upright sheet, and end on its other side by
+    more than a quarter of a cell.  Nearer ones may cross the plane before the edge arrives."""
     last = run.frames[-1].of(body)
     begin = last["position"][:, 0] - last["displacement"][:, 0]
     at_begin, at_end = run.history[f"rigid_{sheet}_x"][[0, -1]]
-    slack = 0.1 * np.sqrt(area / len(begin))
     through = np.where(begin > at_begin, at_end - last["position"][:, 0], last["position"][:, 0] - at_end)
-    return int(np.count_nonzero((through > slack) & (last["position"][:, 1] > above)))
+    return int(np.count_nonzero((np.abs(begin - at_begin) > size / 10) & (through > size / 4) & (last["position"][:, 1] > above)))
 
 
 def opening(run, data):
@@ -65,7 +64,7 @@ def judge(size, higher, run, data):
     """Force and passing particles of the sheet in sand."""
     where = f"cells of {size:.3g} m, room higher by {higher:.3g} m"
     return [tools.Result(CASE, f"force of the sand, {where}", "N/m", -mean_force(run, PUSHED), "within", data["slack"], float(rankine(data)), data["source"], run),
-            tools.Result(CASE, f"particles that passed through, {where}", "-", passed(run, "sand", "sheet", 6 * data["depth of the sand [m]"]), "at most", 0, 0, data["passing source"], run)]
+            tools.Result(CASE, f"particles that passed through, {where}", "-", passed(run, "sand", "sheet", size), "at most", 0, 0, data["passing source"], run)]
 
 
 def judge_water(size, higher, run, data):
@@ -80,7 +79,7 @@ def judge_blade(size, run, data):
     where = f"cells of {size:.3g} m"
     return [tools.Result(CASE, f"opening of a cut block, {where}", "m", opening(run, data), "reported", None, None, "none", run),
             tools.Result(CASE, f"particles that passed through the blade, {where}", "-",
-                         passed(run, "block", "blade", 2, data["edge of the blade at the end [m]"] + AROUND_EDGE * size), "at most", 0, 0, data["passing source"], run)]
+                         passed(run, "block", "blade", size, data["edge of the blade at the end [m]"] + AROUND_EDGE * size), "at most", 0, 0, data["passing source"], run)]
 
 
 def draw_blade(figure, run, data):
