@@ -165,15 +165,15 @@ void find_averaged_bodies(Model<D>& m)
   for (AveragedBodies<D>& one : all)
     one.groups.clear();
   std::size_t used = 0;
-  const Index n_groups = m.n_bodies() * (m.problem.rigid.any_sheet() ? 2 : 1);
-  for (Index group = 0; group < n_groups; ++group) {
-    const auto body_of = [&](Index one) { return one % m.n_bodies(); };
-    const auto field = [&](Index one) { return m.problem.field_of(body_of(one), one >= m.n_bodies()); };
-    if (!materials[static_cast<std::size_t>(body_of(group))].averages_volume)
+  const ParticleStrips<D>& strips = *m.work.strips;
+  const auto field = [&](Index group) { return m.problem.field_of(strips.body_of(group), strips.is_behind(group)); };
+  for (Index group = 0; group < strips.groups(); ++group) {
+    if (!materials[static_cast<std::size_t>(strips.body_of(group))].averages_volume)
       continue;
     const auto same = std::find_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(used), [&](const AveragedBodies<D>& one) {
       const Index first = one.groups.front();
-      return with(body_of(group)) != none && with(body_of(first)) == with(body_of(group)) && field(first) == field(group);
+      return with(strips.body_of(group)) != none && with(strips.body_of(first)) == with(strips.body_of(group)) &&
+             field(first) == field(group);
     });
     if (same != all.begin() + static_cast<std::ptrdiff_t>(used)) {
       same->groups.push_back(group);
@@ -195,10 +195,10 @@ void begin_sweeps(Model<D>& m)
 {
   if (m.work.strips)
     return;
-  find_averaged_bodies(m);
   m.work.strips.emplace();
   m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.transfer->keeps_gradients(), m.state.bodies, m.state.materials,
                       m.state.particles, m.work.order);
+  find_averaged_bodies(m);
   m.transfer->sum_strips(m);
 }
 

@@ -9,6 +9,18 @@ constexpr Real reach = 2;
 /// Nodes nearer than this make the cells around them near: all particles that a parted node sees have a side, and those that arrive in a step.
 constexpr Real zone = 2 * reach + 1;
 
+/// A sheet by the number of its rigid body, and the distance from it, negative behind it.
+template <int D>
+struct NearSheet {
+  Index sheet = none;
+  SurfaceDistance<D> to;
+  void take(Index other, const SurfaceDistance<D>& to_other) noexcept
+  {
+    if (sheet == none || std::abs(to_other.distance) < std::abs(to.distance))
+      sheet = other, to = to_other;
+  }
+};
+
 }  // namespace
 
 template <int D>
@@ -24,7 +36,7 @@ void Sheets<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communica
   if (!any_)
     return;
   const auto n_nodes = static_cast<std::size_t>(mesh.n_nodes());
-  near_.assign(n_nodes, {});
+  nearest_.assign(n_nodes, none);
   may_part_.assign(n_nodes, 0);
   parted_.assign(in_front, std::vector<std::uint8_t>(n_nodes, 0));
   if (!subdomain.alone())
@@ -39,7 +51,7 @@ void Sheets<D>::find(const Mesh<D>& mesh, const RigidScene<D>& scene, std::span<
   parallel_for(mesh.n_nodes(), [&](Index node) {
     const auto n = static_cast<std::size_t>(node);
     const Real size = mesh.node_size(node), far = zone * size;
-    NearSheet<D>& nearest = near_[n] = {};
+    NearSheet<D> nearest;
     for (const Index r : sheets_) {
       const RigidShape<D>& shape = *scene.bodies[static_cast<std::size_t>(r)].shape;
       const RigidState<D>& state = states[static_cast<std::size_t>(r)];
@@ -47,9 +59,10 @@ void Sheets<D>::find(const Mesh<D>& mesh, const RigidScene<D>& scene, std::span<
       if ((mesh.node(node) - state.x).squaredNorm() > around * around)
         continue;
       const SurfaceDistance<D> to = state.distance(shape, mesh.node(node));
-      if (std::abs(to.distance) <= far && (nearest.sheet == none || std::abs(to.distance) < std::abs(nearest.to.distance)))
-        nearest = {r, to};
+      if (std::abs(to.distance) <= far)
+        nearest.take(r, to);
     }
+    nearest_[n] = nearest.sheet;
     may_part_[n] = nearest.sheet != none && !nearest.to.on_rim && std::abs(nearest.to.distance) <= reach * size ? 1 : 0;
   });
 }
@@ -65,9 +78,7 @@ SideOfSheet Sheets<D>::side(const Mesh<D>& mesh, const RigidScene<D>& scene, std
     if (r == none || r == last)
       continue;
     last = r;
-    const SurfaceDistance<D> to = states[static_cast<std::size_t>(r)].distance(*scene.bodies[static_cast<std::size_t>(r)].shape, x);
-    if (nearest.sheet == none || std::abs(to.distance) < std::abs(nearest.to.distance))
-      nearest = {r, to};
+    nearest.take(r, states[static_cast<std::size_t>(r)].distance(*scene.bodies[static_cast<std::size_t>(r)].shape, x));
   }
   SideOfSheet after;
   if (nearest.sheet != none) {

@@ -10,13 +10,6 @@
 
 namespace talus {
 
-/// Where a sheet is: the number of the rigid body, and the distance from it, negative behind it.
-template <int D>
-struct NearSheet {
-  Index sheet = none;
-  SurfaceDistance<D> to;
-};
-
 /// Parts the velocities of material in front of a sheet from those behind it.
 ///
 /// **Sides.**  Particles near a sheet are in front of it or behind it (SideOfSheet), and are summed in two fields.
@@ -68,7 +61,7 @@ class Sheets {
     return parted_[field < in_front_ ? field : field - in_front_][static_cast<std::size_t>(node)] != 0;
   }
   /// The sheet that is nearest to a node near one, or none.
-  Index nearest(Index node) const noexcept { return near_[static_cast<std::size_t>(node)].sheet; }
+  Index nearest(Index node) const noexcept { return nearest_[static_cast<std::size_t>(node)]; }
 
  private:
   void find_members(const Mesh<D>& mesh, const OwnNodes& own, std::span<VelocityField<D>> fields, std::size_t f);
@@ -76,7 +69,7 @@ class Sheets {
   bool any_ = false;
   std::size_t in_front_ = 0;
   std::vector<Index> sheets_;                       ///< numbers of the rigid bodies
-  std::vector<NearSheet<D>> near_;                  ///< by node
+  std::vector<Index> nearest_;                      ///< by node: number of the rigid body, none if no sheet is near
   std::vector<std::uint8_t> may_part_;              ///< by node: it is near enough to a sheet, and not beyond its rim
   std::vector<std::vector<std::uint8_t>> parted_;   ///< by field in front and own node
   std::array<std::vector<std::uint8_t>, 2> moves_;  ///< by side and node: enough mass for a motion of its own, in the field at hand

@@ -16,8 +16,8 @@ namespace talus {
 inline constexpr Real least_share = 1e-8, least_share_of_signed_weights = 2e-2;
 
 /// Limit of the ratio of the mass of a node to the sum of absolute masses from single cells.  Cells whose weights have different signs may
-/// leave a node next to no mass; velocity and acceleration are then quotients of two small differences.  On four grids that become 4 or 10
-/// times finer from one cell to the next particles invert with 0.1, energy grows 35-fold with 0.5, and none fails with 0.3.
+/// leave a node next to no mass; velocity and acceleration are then quotients of two small differences.  Of four grids that become 4 or 10
+/// times finer from one cell to the next, particles invert on one with 0.1, one gains 35 times its energy with 0.5, none fails with 0.3.
 inline constexpr Real least_share_of_cells = 0.3;
 /// Limit of the ratio of the mass of a node to the mean mass of the linear shape functions around, for kernels with node operators.  Beside a
 /// wall that carries a thin film a node has next to no mass, but the film's stress acts on it.  On a regular lattice the ratio is 0.4 under a

@@ -105,9 +105,11 @@ TYPED_TEST(SheetIn, NodesThatItDoesNotPartAreOne)
   const auto waves = [](const Vec<D>& x) -> Vec<D> {
     return along<D>(D - 1, std::sin(5 * x[0])) + along<D>(0, 0.3 * std::cos(4 * x[D - 1]));
   };
-  for (const bool musl : {true, false}) {
+  for (const auto& [musl, damping] : {std::pair{true, 0.0}, std::pair{false, 0.0}, std::pair{true, 0.5}}) {
     auto free = block_and_sheet<TypeParam>({}, Vec<D>::Zero(), waves, musl);
     auto beside = block_and_sheet<TypeParam>(SheetAt{.low = D == 2 ? 0.95 : 1.15}, Vec<D>::Zero(), waves, musl);
+    for (auto* const m : {&free, &beside})  // local damping acts on the acceleration that particles of both fields feel
+      m->state.stage.damping = damping, m->state.stage.seeks_rest = damping > 0;
     const Real dt = D == 2 ? 1e-3 : 2e-3;
     run(free, 12, dt), run(beside, 12, dt);
     const auto [front, behind] = count_sides(beside);
