@@ -24,7 +24,7 @@ struct Body {
 template <int D>
 struct Particles {
   std::vector<std::int64_t> id;  ///< number that survives sorting and deletion of particles
-  std::vector<Index> cell;       ///< the cell that holds x
+  std::vector<Index> cell;       ///< the cell that holds x, or the reference position where there is one
   ParticleColumn<Vec<D>> x;      ///< position [m]
   ParticleColumn<Vec<D>> v;      ///< velocity [m/s]
   ParticleColumn<Mat<D>> L;      ///< velocity gradient [1/s]
@@ -41,6 +41,8 @@ struct Particles {
   ParticleColumn<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]
   ParticleColumn<Real> pore;          ///< pore pressure, part of `stress`; 0 in bodies whose laws use total stress [Pa]
   ParticleColumn<Real> side;          ///< of the nearest sheet, see SideOfSheet [-]
+  ParticleColumn<Vec<D>> reference;   ///< position at which the kernel weighs, where that is not always x [m]
+  ParticleColumn<Mat<D>> G;           ///< deformation gradient since the particle was there
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
 
@@ -66,7 +68,7 @@ struct Particles {
     f("mass", "kg", self.mass), f("volume0", "m^D", self.volume0), f("volume", "m^D", self.volume);
     f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied);
     f("volume_ratio", "-", self.volume_ratio), f("viscous_pressure", "Pa", self.viscous), f("pore_pressure", "Pa", self.pore);
-    f("side", "-", self.side);
+    f("side", "-", self.side), f("reference", "m", self.reference), f("since_reference", "-", self.G);
   }
 };
 

@@ -21,19 +21,6 @@ struct Symmetric {
   }
 };
 
-/// The product A x.
-template <int D>
-Vec<D> operator*(const Symmetric<D>& A, const Vec<D>& x) noexcept
-{
-  Vec<D> product;
-  for (int i = 0; i < D; ++i) {
-    product[i] = A(i, 0) * x[0];
-    for (int j = 1; j < D; ++j)
-      product[i] += A(i, j) * x[j];
-  }
-  return product;
-}
-
 /// The adjugate, det(A) A^-1.
 template <int D, class T>
 constexpr Symmetric<D, T> adjugate(const Symmetric<D, T>& s) noexcept

@@ -3,6 +3,7 @@
 #include "core/stop_watch.hpp"
 #include "solver/rigid/rigid_contacts.hpp"
 #include "solver/state/integrate.hpp"
+#include "solver/strips/reference.hpp"
 
 namespace talus {
 
@@ -153,6 +154,31 @@ void record_node_sums(Model<D>& m)
   work.rigid.add_sums(problem.mesh, state.rigid, work.fields, work.sums.rigid);
 }
 
+/// Finds the bodies that are renewed as a whole at the end of the step, by their distortion before it.
+template <int D>
+void find_renewed_bodies(Model<D>& m)
+{
+  const std::vector<ReferenceOptions>& references = m.problem.references;
+  m.work.renewed.assign(references.size(), 0);
+  if (std::ranges::none_of(references, &ReferenceOptions::renews_whole))
+    return;
+  const ParticleStrips<D>& strips = *m.work.strips;
+  std::vector<Real> most(references.size(), 0);  // with the sign turned, for the least of all ranks
+  for (Index body = 0; body < m.n_bodies(); ++body)
+    if (references[to_size(body)].renews_whole())
+      most[to_size(body)] = parallel_min(strips.blocks(), Real{0}, [&](Index block) {
+        Real least = 0;
+        for (const Strip& strip : strips.strips(strips.key(body, block)))
+          for (std::size_t i = 0; i < to_size(strip.n); ++i)
+            least = std::min(least, -distortion(strips.columns(strip), i));
+        return least;
+      });
+  std::int64_t no_word = 0;
+  m.problem.ranks->least(most, no_word);
+  for (std::size_t body = 0; body < most.size(); ++body)
+    m.work.renewed[body] = -most[body] > references[body].distortion.value_or(ReferenceOptions::default_distortion) ? 1 : 0;
+}
+
 /// Conducts heat within each body whose law has temperature, not through sheets.
 template <int D>
 void conduct_heat(Model<D>& m, Real dt)
@@ -287,6 +313,7 @@ void make_step(Model<D>& m, Real dt)
   record_node_sums(m);
   watch.lap(state.timings.nodes);
   clear_particle_sums(m);
+  find_renewed_bodies(m);
   transfer.nodes_to_particles(m, kick, dt, between_parts(m, dt));  //  9 to 12, and 2 and 3 of the next step
   record_particle_sums(m);
   move(problem.rigid, dt, state.rigid);

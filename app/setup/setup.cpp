@@ -255,6 +255,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   for (const ContactLaw& law : setup.conditions.contacts.laws)
     setup.notes.push_back(describe(law));
   setup.conditions.cuts = cuts_of(scene);
+  for (const BodySpec& body : scene.bodies)
+    setup.conditions.references.push_back(body.reference.value_or(ReferenceOptions()));
   for (const CutLaw& law : setup.conditions.cuts)
     setup.notes.push_back(describe(law));
   add_rigid_bodies(scene, mesh, ranks, errors, setup);

@@ -12,6 +12,7 @@
 #include "core/fields.hpp"
 #include "io/scene/shape.hpp"
 #include "materials/interface/any_law.hpp"
+#include "solver/options/reference_options.hpp"
 
 namespace talus {
 
@@ -36,6 +37,7 @@ struct BodySpec {
   std::optional<Shape> shape;
   std::optional<Index> particles_per_cell;  ///< has a value in every body of a scene that was read, if it fills anything
   std::optional<bool> f_bar;
+  std::optional<ReferenceOptions> reference;
   std::vector<std::string> velocity;
   std::optional<Real> saturated_density;
   SourceLocation where;
@@ -52,6 +54,8 @@ struct BodySpec {
         optional("f_bar", &BodySpec::f_bar, any, "-",
                  "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
                  "johnson_cook, whose flow keeps the volume, false otherwise"),
+        group("reference", &BodySpec::reference,
+              "the configuration to which weights and gradients belong; default the present one, renewed in each step"),
         optional("velocity", &BodySpec::velocity, any, "m/s",
                  "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\": see formulas"),
         optional("saturated_density", &BodySpec::saturated_density, positive, "kg/m^3",
@@ -61,7 +65,7 @@ struct BodySpec {
   bool fills() const noexcept { return !region.empty() || shape.has_value(); }
 
   /// Keys of a body whose particles come from another run.  All others say how a body is filled, and would not be used there.
-  static constexpr std::array<std::string_view, 3> keys_without_filling{"name", "material", "f_bar"};
+  static constexpr std::array<std::string_view, 4> keys_without_filling{"name", "material", "f_bar", "reference"};
   /// f(key, whether it is given) for every other key.
   template <class F>
   void for_each_key_of_filling(F&& f) const

@@ -21,6 +21,7 @@ class Rules : private SceneRuleBase {
     contacts();
     cuts();
     append(broken_rigid_rules(scene_));
+    append(broken_reference_rules(scene_));
     loads_and_boundaries();
     append(broken_output_rules(scene_));
     append(broken_stage_rules(scene_));

@@ -44,6 +44,10 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
     particles.pore.assign(n, 0);
   if (wanted.side && particles.side.empty())
     particles.side.assign(n, 0);
+  if (wanted.reference && particles.reference.empty()) {
+    particles.reference = particles.x;
+    particles.G.assign(n, Mat<D>::Identity());
+  }
 }
 
 template <int D>
@@ -105,12 +109,14 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
     const auto any_of = [&](const std::vector<Material>& laws) { return std::any_of(laws.begin(), laws.end(), has); };
     return any_of(state.materials) || std::any_of(to_come.begin(), to_come.end(), any_of);
   };
-  problem.columns = {.affine = problem.transfer.own_affine_field(),
+  const bool reference = has_reference(problem.references);
+  problem.columns = {.affine = problem.transfer.own_affine_field() || (reference && problem.transfer.affine()),
                      .applied = problem.loads.any_on_particles(),
                      .volume_ratio = any_material([](const Material& material) { return material.averages_volume; }),
                      .viscous = any_material([](const Material& material) { return material.viscosity.has_value(); }),
                      .pore = problem.water.any(),
-                     .side = problem.rigid.any_sheet()};
+                     .side = problem.rigid.any_sheet(),
+                     .reference = reference};
   fill_columns(problem.columns, state.particles);
   const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))
@@ -196,7 +202,7 @@ void begin_sweeps(Model<D>& m)
   if (m.work.strips)
     return;
   m.work.strips.emplace();
-  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.transfer->keeps_gradients(), m.state.bodies, m.state.materials,
+  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.transfer->keeps_gradients() || m.problem.columns.reference, m.state.bodies, m.state.materials,
                       m.state.particles, m.work.order);
   find_averaged_bodies(m);
   m.transfer->sum_strips(m);

@@ -11,6 +11,7 @@
 #include "solver/loads/loads.hpp"
 #include "solver/loads/water.hpp"
 #include "solver/options/limit_options.hpp"
+#include "solver/options/reference_options.hpp"
 #include "solver/options/transfer_options.hpp"
 #include "solver/particles/removal.hpp"
 #include "solver/rigid/rigid_body.hpp"
@@ -26,6 +27,7 @@ struct WantedColumns {
   bool viscous = false;       ///< a law has bulk viscosity
   bool pore = false;          ///< there is pore water
   bool side = false;          ///< there are sheets
+  bool reference = false;     ///< a body has a reference configuration
 };
 /// The parts of a scene other than bodies and their boundary conditions.
 template <int D>
@@ -37,6 +39,7 @@ struct SceneConditions {
   Contacts contacts;
   std::vector<CutLaw> cuts;  ///< by number of the cut of the mesh
   RigidScene<D> rigid;
+  std::vector<ReferenceOptions> references;  ///< of each body; none: all are renewed in each step
   RunLimits limits;
 };
 

@@ -25,6 +25,7 @@ template <int D>
 struct Workspace {
   std::optional<ParticleStrips<D>> strips;  ///< between begin_sweeps() and end_sweeps(): the particles, instead of their columns
   CellOrder order;
+  std::vector<std::uint8_t> renewed;  ///< bodies that are renewed as a whole at the end of this step, see ReferenceOptions
   TrackedIds carriers;  ///< particles that carry tractions
   Migration<D> migration;
   ParticleErrors errors;

@@ -7,7 +7,6 @@
 
 #include "core/sparse_rows.hpp"
 #include "core/types.hpp"
-#include "kernels/symmetric.hpp"
 #include "solver/state/nodes_in_use.hpp"
 
 namespace talus {
@@ -60,7 +59,7 @@ template <int D>
 struct ProjectedNodeSum : NodeSum<D> {
   Mat<D> affine = Mat<D>::Zero();  ///< sum B m A [kg/s]
   Real volume{};                   ///< sum B V [m^D], where surfaces are extended
-  Symmetric<D> tension{};          ///< sum B V sigma [N m]
+  Mat<D> tension = Mat<D>::Zero();  ///< sum B V sigma, of reference configurations sum B V sigma G^-T [N m]
   Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
   void clear_momentum() noexcept
   {
@@ -88,11 +87,23 @@ struct ProjectedNodeSum : NodeSum<D> {
     NodeSum<D>::operator+=(other);
     affine += other.affine;
     volume += other.volume;
-    for (int k = 0; k < Symmetric<D>::size; ++k)
-      tension.entry[k] += other.tension.entry[k];
+    tension += other.tension;
     return *this;
   }
 };
+
+/// Z g, entry by entry from the left: one order of the sums wherever a tension pulls.
+template <int D>
+Vec<D> pull_of(const Mat<D>& tension, const Vec<D>& gradient) noexcept
+{
+  Vec<D> force;
+  for (int i = 0; i < D; ++i) {
+    force[i] = tension(i, 0) * gradient[0];
+    for (int j = 1; j < D; ++j)
+      force[i] += tension(i, j) * gradient[j];
+  }
+  return force;
+}
 
 /// The motion of a node.  One cache line in 3-D.
 template <int D>

@@ -37,7 +37,7 @@ template <int D, class F>
 void for_each_shape(const Mesh<D>& mesh, Index c, const ParticlesInCell<D>& run, F&& f) noexcept
 {
   for (std::size_t i = run.begin; i < run.end; i += pack_size) {
-    auto shape = barycentric_inside(mesh, c, run.columns.x, i);
+    auto shape = barycentric_inside(mesh, c, run.columns.places(), i);
     transpose(shape[0], shape[1], shape[2], shape[3]);
     for (std::size_t lane = 0; lane < pack_size && i + lane < run.end; ++lane)
       f(i + lane, std::as_const(shape[lane]));
@@ -49,7 +49,7 @@ void for_each_linear_value(const Mesh<D>& mesh, Index c, const std::array<Real, 
                            F&& f) noexcept
 {
   for (std::size_t i = run.begin; i < run.end; i += pack_size) {
-    const auto shape = barycentric_inside(mesh, c, run.columns.x, i);
+    const auto shape = barycentric_inside(mesh, c, run.columns.places(), i);
     Pack value{};
     for (std::size_t a = 0; a <= D; ++a)
       value += shape[a] * values[a];

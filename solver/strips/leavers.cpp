@@ -37,7 +37,7 @@ void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locato
     const Real* const record = leavers.numbers.data() + i * record_width(key);
     Vec<D> x;
     for (int d = 0; d < D; ++d)
-      x[d] = record[layout_.step_arrays().x + d];
+      x[d] = record[layout_.place() + d];
     Leavers::Leaver& leaver = leavers.all[i];
     leaver.to = locator(mesh, x, leaver.to).value_or(none);  // also nothing for a position that is not finite
     leaver.is_summed = leaver.to != none && leaver.to / block_cells == leaver.cell / block_cells;
@@ -66,6 +66,8 @@ void ParticleStrips<D>::take_exits(const Mesh<D>& mesh, const Locator<D>& locato
         errors.report(all.id[0], Trouble::not_finite);
       } else if (const auto back = set_back(mesh, locator, exits, x)) {
         all.x.set(0, back->x);
+        if (all.reference)
+          all.reference.set(0, back->x);
         set_forces(all);
         leaver.to = back->cell;
         sums.removed.add({.held_count = 1});

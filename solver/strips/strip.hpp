@@ -25,7 +25,7 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, side;
+  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, side, reference, since_reference;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place.
@@ -67,7 +67,9 @@ class StripLayout {
                .averaged = at("volume_ratio") == none ? none : width_++,
                .viscous = at("viscous_pressure"),
                .pore = at("pore_pressure"),
-               .side = at("side")};
+               .side = at("side"),
+               .reference = at("reference"),
+               .since_reference = at("since_reference")};
   }
   static constexpr std::string_view gradient = "velocity_gradient", affine = "affine";
   /// Arrays of a strip, without gradients and those of its law.
@@ -77,6 +79,8 @@ class StripLayout {
   Index kept_gradients() const noexcept { return keeps_gradients_ ? gradients_ : 0; }
   bool has_affine() const noexcept { return has_affine_; }
   const StepArrays& step_arrays() const noexcept { return arrays_; }
+  /// The first array of the positions at which the kernel weighs.
+  Index place() const noexcept { return arrays_.reference != none ? arrays_.reference : arrays_.x; }
   /// The first array of a column by its number in Particles, or by its name; `none` without.
   Index at(std::size_t number) const noexcept { return at_[number]; }
   Index at(std::string_view name) const noexcept
@@ -158,8 +162,12 @@ struct StripColumns {
   StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{}, side{};
   StripColumn<Vec<D>> applied{};                 ///< forces of loads at the present positions [N]
   StripColumn<Real> volume_ratio{}, averaged{};  ///< of averaged volumes: see StressStrip; `averaged` lasts for a step
+  StripColumn<Vec<D>> reference{};               ///< where there are reference configurations, see reference.hpp [m]
+  StripColumn<Mat<D>> G{};
   StripIds id{};
   const StripColumn<Mat<D>>& affine_field() const noexcept { return C ? C : L; }
+  /// Where the kernel weighs the particles: the cells of strips hold these positions.
+  const StripColumn<Vec<D>>& places() const noexcept { return reference ? reference : x; }
 };
 
 /// Particles that are to leave their cells, with copies of their numbers as in Arrival, one after the other.

@@ -2,7 +2,7 @@
 // The contributions of the particles of a cell to its stencil: mass, momentum and force through the weights of a kernel.
 #include "kernels/kernel.hpp"
 #include "solver/halo/block_rows.hpp"
-#include "solver/strips/strip.hpp"
+#include "solver/strips/reference.hpp"
 
 namespace talus {
 
@@ -38,7 +38,8 @@ struct CellSums {
   }
 };
 
-/// V sigma G_v = s_v (slope y_v - shift) [N] of four particles: the stress of each applied to the factors of its weights.
+/// V sigma G_v = s_v (slope y_v - shift) [N] of four particles: the stress of each, pulled back to its reference, applied to the factors of
+/// its weights.
 template <int D>
 struct Tension {
   Pack slope[D][D], shift[D];
@@ -46,12 +47,19 @@ struct Tension {
 template <int D, int N>
 Tension<D> tension_of(const StripColumns<D>& columns, std::size_t first, const Weights<D, N>& weights) noexcept
 {
-  const Pack volume = columns.volume.load(first).of;
-  const Sym3Of<SimdReal> stress = columns.stress.load(first);
   Pack T[D][D];
-  for (int i = 0; i < D; ++i)
-    for (int j = i; j < D; ++j)
-      T[i][j] = T[j][i] = volume * stress[Symmetric<3>::place(i, j)].of;
+  if (columns.G) {
+    const MatOf<D> pulled = pulled_back_tension(columns, first);
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j)
+        T[i][j] = pulled(i, j).of;
+  } else {
+    const Pack volume = columns.volume.load(first).of;
+    const Sym3Of<SimdReal> stress = columns.stress.load(first);
+    for (int i = 0; i < D; ++i)
+      for (int j = i; j < D; ++j)
+        T[i][j] = T[j][i] = volume * stress[Symmetric<3>::place(i, j)].of;
+  }
   Tension<D> tension;
   for (int i = 0; i < D; ++i) {
     tension.shift[i] = Pack{};
@@ -105,7 +113,7 @@ void deposit(const StripColumns<D>& columns, std::size_t first, int count, const
       for (int j = 0; j < D; ++j) {
         if constexpr (affine) {
           A_i[j] = broadcast(A(i, j));
-          v_origin -= A(i, j) * (columns.x.component(j)[p] - cell.origin[j]);
+          v_origin -= A(i, j) * (columns.places().component(j)[p] - cell.origin[j]);
         }
         if constexpr (forces)
           T_i[j] = broadcast(-tension.slope[i][j][lane]);
@@ -144,11 +152,10 @@ void deposit(const StripColumns<D>& columns, std::size_t first, int count, const
 template <int D, int N>
 void deposit_force(const StripColumns<D>& columns, std::size_t p, const Real (&slopes)[D][N], int n, CellSums<D, N>& sums) noexcept
 {
-  const Real volume = columns.volume.of(p);
-  const Sym3 stress = columns.stress.of(p);
+  const Mat<D> tension = tension_of(columns, p);
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
-      const Pack T = broadcast(volume * stress[Symmetric<3>::place(i, j)]);
+      const Pack T = broadcast(tension(i, j));
       for (int a = 0; a < n; a += pack_size)
         store(sums.force[i] + a, load(sums.force[i] + a) - T * load(slopes[j] + a));
     }

@@ -4,6 +4,7 @@
 #include "solver/transfer/deposit.hpp"
 #include "solver/transfer/interpolate.hpp"
 #include "solver/transfer/kernel_rows.hpp"
+#include "solver/strips/reference.hpp"
 #include "solver/transfer/strip_scratch.hpp"
 
 namespace talus {
@@ -51,7 +52,7 @@ void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<
     scratch.ahead.next();
     const int count = run.count(i);
     Pack x[D];
-    at.place(kernel, columns.x, i, count, stays, x);
+    at.place(kernel, columns.places(), i, count, stays, x);
     const bool exact = forces && pairs_force_with_slopes<D>(kernel);
     const Tension<D> tension = forces && !exact ? tension_of(columns, i, at.weights) : Tension<D>{};
     deposit<affine, loaded, forces>(columns, i, count, stays, at.cell, at.weights, tension, at.sums);
@@ -94,7 +95,7 @@ TALUS_ONE_COPY void add_virtual_stress(const K& kernel, const Mesh<D>& mesh, con
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
       const int count = run.count(i);
       Pack x[D];
-      at.place(kernel, columns.x, i, count, scratch.stays.data(), x);
+      at.place(kernel, columns.places(), i, count, scratch.stays.data(), x);
       for (int lane = 0; lane < count; ++lane) {
         const std::size_t p = i + static_cast<std::size_t>(lane);
         if (scratch.stays[p] == 0)
@@ -109,8 +110,9 @@ TALUS_ONE_COPY void add_virtual_stress(const K& kernel, const Mesh<D>& mesh, con
               std::copy_n(slopes[d], at.weights.padded_size[lane], of.dw[d]);
           }
         const Real volume = columns.volume.of(p);
-        const VirtualStress<D> stress =
+        VirtualStress<D> stress =
             virtual_stress<D>(load, columns.id[p], columns.F.of(p).template topLeftCorner<D, D>(), columns.volume0.of(p), volume);
+        pull_back(columns, p, stress.tension);
         for (std::size_t a = 0; a < slots.size(); ++a) {
           SurfaceSum<D>& row = rows[slots[a]];
           for (int d = 0; d < D; ++d)
@@ -193,9 +195,11 @@ class DirectStrips {
   void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs)
-      for_each_pack(run, columns.x, nodes_of(m_, *of_).motion, [&](std::size_t i, int count) {
+      for_each_pack(run, columns.places(), nodes_of(m_, *of_).motion, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<increments, true>(count);
         store_gradient(i, count, seen, columns.L);
+        if (columns.C)
+          store_gradient(i, count, seen, columns.C);
         find_apic_field(columns, i, count, columns.L);
         store_velocity<increments>(columns, i, count, seen, pic);
         store_place(columns, i, count, seen.v, dt);
@@ -205,7 +209,7 @@ class DirectStrips {
   void move_with_remapped_gradient(const StripColumns<D>& columns, Real dt) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs)
-      for_each_pack(run, columns.x, nodes_of(m_, *of_).remapped, [&](std::size_t i, int count) {
+      for_each_pack(run, columns.places(), nodes_of(m_, *of_).remapped, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<true, true>(count);
         store_gradient(i, count, seen, columns.L);
         store_place(columns, i, count, seen.change, dt);
@@ -216,7 +220,7 @@ class DirectStrips {
   {
     for (const CellRun<D>& run : scratch_.runs) {
       at_.sums.clear(K::max_nodes);
-      for_each_pack(run, columns.x, nodes_of(m_, *of_).motion, [&](std::size_t i, int count) {
+      for_each_pack(run, columns.places(), nodes_of(m_, *of_).motion, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<increments, affine>(count);
         if constexpr (affine) {
           store_gradient(i, count, seen, columns.C);
@@ -250,7 +254,7 @@ class DirectStrips {
     if (m_.problem.transfer.scheme == Scheme::apic)
       for (int lane = 0; lane < count; ++lane) {
         const std::size_t p = i + static_cast<std::size_t>(lane);
-        columns.C.set(p, apic_field(at_.cell, at_.motion, at_.weights, lane, columns.x.of(p), gradients.of(p)));
+        columns.C.set(p, apic_field(at_.cell, at_.motion, at_.weights, lane, columns.places().of(p), gradients.of(p)));
       }
   }
   template <bool increments>

@@ -9,6 +9,7 @@
 #include "kernels/node_operators.hpp"
 #include "solver/halo/halo_exchange.hpp"
 #include "solver/model/state.hpp"
+#include "solver/state/nodes.hpp"
 #include "solver/state/nodes_in_use.hpp"
 #include "solver/transfer/extension.hpp"
 
@@ -17,8 +18,8 @@ namespace talus {
 /// Sums over the particles of a group in a cell, for each of its vertices a.
 template <int D>
 struct CellGroupSum {
-  std::array<Real, D + 1> volume{};           ///< sum B_a V [m^D]
-  std::array<Symmetric<D>, D + 1> tension{};  ///< sum B_a V sigma [N m]
+  std::array<Real, D + 1> volume{};            ///< sum B_a V [m^D]
+  std::array<Mat<D>, D + 1> tension = zeros();  ///< sum B_a V sigma, see ProjectedNodeSum [N m]
   bool is_seen() const noexcept
   {
     return std::ranges::any_of(volume, [](Real of) { return of != 0; });
@@ -27,6 +28,14 @@ struct CellGroupSum {
   static auto parts(Self& sum) noexcept
   {
     return std::tie(sum.volume, sum.tension);
+  }
+
+ private:
+  static std::array<Mat<D>, D + 1> zeros() noexcept
+  {
+    std::array<Mat<D>, D + 1> all;
+    all.fill(Mat<D>::Zero());
+    return all;
   }
 };
 
@@ -118,7 +127,7 @@ class Interfaces {
         entry_of(mesh.ring_of_node(), n, v) - static_cast<std::size_t>(mesh.ring_of_node().begin[static_cast<std::size_t>(n)]);
     Vec<D> force = Vec<D>::Zero();
     for (std::size_t b = 0; b < groups_; ++b)
-      force += tension_[i * groups_ + b] * rows_[first_row_[i] + b * ring + entry];
+      force += pull_of<D>(tension_[i * groups_ + b], rows_[first_row_[i] + b * ring + entry]);
     return force;
   }
   /// Computes the velocity gradients of the groups at mixed nodes.
@@ -166,14 +175,13 @@ class Interfaces {
     const Index n = mixed_[i];
     thread_local std::vector<Real> shares;
     shares.clear();
-    std::fill_n(tension_.begin() + static_cast<std::ptrdiff_t>(i * groups_), groups_, Symmetric<D>{});
+    std::fill_n(tension_.begin() + static_cast<std::ptrdiff_t>(i * groups_), groups_, Mat<D>::Zero());
     for (const Index c : mesh.cells_of_node()[n]) {
       const std::size_t a = vertex_of(mesh, c, n);
       for (std::size_t b = 0; b < groups_; ++b) {
         const CellGroupSum<D>& sum = cells_[b][static_cast<std::size_t>(c)];
         shares.push_back(std::max(sum.volume[a], Real{0}));  // a particle on a facet may lie outside of its cell by rounding
-        for (int k = 0; k < Symmetric<D>::size; ++k)
-          tension_[i * groups_ + b].entry[k] += sum.tension[a].entry[k];
+        tension_[i * groups_ + b] += sum.tension[a];
       }
     }
     fit_shares(mesh, n, groups_, std::span(shares));
@@ -187,7 +195,7 @@ class Interfaces {
   std::vector<Index> mixed_, place_;                ///< mixed nodes, ascending; of each node where it is among them, or `none`
   std::vector<std::size_t> first_row_;
   std::vector<Vec<D>> rows_;           ///< of each mixed node, by group
-  std::vector<Symmetric<D>> tension_;  ///< of each mixed node, by group
+  std::vector<Mat<D>> tension_;  ///< of each mixed node, by group
   std::vector<Mat<D>> gradient_;       ///< of each mixed node, by group
 };
 

@@ -49,7 +49,7 @@ void project_sums(const NodeOperators<D>& operators, const Interfaces<D>& interf
       total.see_particles(projected_node.lightest);
       total.momentum += S * projected_node.momentum_about(mesh.node(v) - operators.centre(n));
       total.force += S * projected_node.force;
-      total.force -= interfaces.is_mixed(n) ? interfaces.pull(mesh, n, v) : projected_node.tension * gradient;
+      total.force -= interfaces.is_mixed(n) ? interfaces.pull(mesh, n, v) : pull_of<D>(projected_node.tension, gradient);
     });
     total.gross = static_cast<float>(around / ring);
   });
@@ -64,7 +64,7 @@ Vec<D> stress_force(const NodeOperators<D>& operators, const Interfaces<D>& inte
   operators.for_each_in_column(v, [&](Index n, Real, const Vec<D>& gradient) {
     const ProjectedNodeSum<D>& projected_node = projected[static_cast<std::size_t>(n)];
     if (projected_node.is_seen())
-      force -= interfaces.is_mixed(n) ? interfaces.pull(mesh, n, v) : projected_node.tension * gradient;
+      force -= interfaces.is_mixed(n) ? interfaces.pull(mesh, n, v) : pull_of<D>(projected_node.tension, gradient);
   });
   return force;
 }

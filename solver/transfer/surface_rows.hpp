@@ -7,6 +7,7 @@
 #include "solver/halo/halo.hpp"
 #include "solver/loads/surface_load.hpp"
 #include "solver/state/sums.hpp"
+#include "solver/strips/reference.hpp"
 #include "solver/transfer/strip_scratch.hpp"
 
 namespace talus {
@@ -42,8 +43,9 @@ TALUS_ONE_COPY void add_virtual_stress(const SurfaceLoad<D>& load, const StripCo
       if (scratch.stays[i] == 0)
         continue;
       const Real volume = columns.volume.of(i);
-      const VirtualStress<D> stress =
+      VirtualStress<D> stress =
           virtual_stress<D>(load, columns.id[i], columns.F.of(i).template topLeftCorner<D, D>(), columns.volume0.of(i), volume);
+      pull_back(columns, i, stress.tension);
       for (std::size_t a = 0; a <= D; ++a) {
         const Real share = scratch.share[a][i];
         if constexpr (projects)

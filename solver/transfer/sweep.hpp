@@ -18,8 +18,8 @@ struct SweepParts {
   bool deposits = false;  ///< sums for the next step
 };
 
-/// Whether particles have the sides of sheets of the present places, or of those before the step.
-enum class SidesAre : std::uint8_t { known, old };
+/// When particles are summed: at the end of a step, or when they come into strips, with references and sides of sheets that hold.
+enum class DepositAt : std::uint8_t { step, load };
 
 /// Sweeps over the blocks of a model.  Lives on the stack of a thread, for one block.
 template <int D, Kernel<D> K>
@@ -39,7 +39,7 @@ class BlockSweep {
   {
     clear_sums(true);
     for_each_strip({.deposits = true}, [&](std::size_t key, Index number, const StripColumns<D>& columns) {
-      deposit(key, number, columns, m_.state.clock.time, SidesAre::known);
+      deposit(key, number, columns, m_.state.clock.time, DepositAt::load);
     });
     add_arrivals_within();
   }
@@ -52,12 +52,12 @@ class BlockSweep {
     for_each_strip(parts, [&](std::size_t key, Index number, StripColumns<D>& columns) {
       if (parts.moves)
         move(key, columns, parts.deposits, dt, pic);
-      else
+      else if (strips_.layout().kept_gradients() == 0)
         through_.find_gradients(columns.before, parts.deposits, columns);
       if (parts.updates)
         update(key, number, columns, dt);
       if (parts.deposits)
-        deposit(key, number, columns, m_.state.clock.time + dt, SidesAre::old);
+        deposit(key, number, columns, m_.state.clock.time + dt, DepositAt::step);
     });
     if (parts.deposits)
       add_arrivals_within();
@@ -178,7 +178,7 @@ class BlockSweep {
         ++i;
       add_run(arriving[begin].cell, begin, i);
     }
-    find_shares(columns.x, scratch_);
+    find_shares(columns.places(), scratch_);
     through_.add(columns, arriving.size(), block_);
     add_surface_loads(group, columns);
   }
@@ -212,6 +212,8 @@ class BlockSweep {
     if (columns.applied)
       m_.work.load_sums[key].add_forces(columns, n);
     through_.move(columns, with_affine, dt, pic);
+    if (columns.G)
+      follow_motion(columns, n, dt);
     if (columns.applied)
       m_.work.load_sums[key].add_work(columns, n);
     if (m_.state.materials[static_cast<std::size_t>(strips_.body(key))].averages_volume)
@@ -228,6 +230,9 @@ class BlockSweep {
     const Material& material = m_.state.materials[static_cast<std::size_t>(body)];
     for (const CellRun<D>& run : scratch_.runs)
       std::fill(scratch_.altitude + run.begin, scratch_.altitude + run.end + strip_padding - 1, run.frame->altitude);
+    if (columns.G)
+      for (std::size_t i = 0; i < n; ++i)
+        scratch_.altitude[i] *= least_stretch(columns, i);
     const StripColumn<Real> pore_after = find_pore_pressures(body, columns, dt);
     columns.v.pad(n), columns.L.pad(n), columns.F.pad(n), columns.stress.pad(n);
     columns.mass.pad(n), columns.volume0.pad(n), columns.volume.pad(n);
@@ -279,13 +284,15 @@ class BlockSweep {
   }
 
   /// Computes the forces of loads at a time, lists the particles that have left their cells or the side of a sheet, and sums the others.
-  void deposit(std::size_t key, Index number, const StripColumns<D>& columns, Real time, SidesAre sides)
+  void deposit(std::size_t key, Index number, const StripColumns<D>& columns, Real time, DepositAt at)
   {
     const std::size_t n = scratch_.runs.back().end;
     find_forces(m_, time, columns, n);
-    find_shares(columns.x, scratch_);
+    if (columns.G && at == DepositAt::step && is_renewed(strips_.body(key), columns))
+      renew(columns, n);
+    find_shares(columns.places(), scratch_);
     if (columns.side)
-      find_sides(columns, sides);
+      find_sides(columns, at);
     auto run = scratch_.runs.begin();
     for (const Index i : scratch_.left) {
       while (static_cast<std::size_t>(i) >= run->end)
@@ -298,15 +305,30 @@ class BlockSweep {
     through_.add(columns, n, block_);
     add_surface_loads(strips_.group(key), columns);
   }
+  /// Whether the particles of a strip take a new reference.
+  bool is_renewed(Index body, const StripColumns<D>& columns) const noexcept
+  {
+    const ReferenceOptions& options = m_.problem.references[to_size(body)];
+    if (!options.renews_in_parts())
+      return options.update == ReferenceUpdate::always || m_.work.renewed[to_size(body)] != 0;
+    const Real strain = options.distortion.value_or(ReferenceOptions::default_distortion);
+    return std::ranges::any_of(scratch_.runs, [&](const CellRun<D>& run) {
+      const Real reach = options.shift.value_or(ReferenceOptions::default_shift) * run.frame->altitude;
+      for (std::size_t i = run.begin; i < run.end; ++i)
+        if (distortion(columns, i) > strain || (columns.x.of(i) - columns.reference.of(i)).squaredNorm() > reach * reach)
+          return true;
+      return false;
+    });
+  }
   /// Finds the sides of sheets that particles are on, unless they are known, and lists the particles that change theirs as leavers.
-  void find_sides(const StripColumns<D>& columns, SidesAre sides)
+  void find_sides(const StripColumns<D>& columns, DepositAt at)
   {
     const std::size_t cell_leavers = scratch_.left.size();
     for (const CellRun<D>& run : scratch_.runs) {
       const Index cell = run.frame->cell;
       for (std::size_t i = run.begin; i < run.end; ++i) {
         SideOfSheet side(columns.side.of(i));
-        if (sides == SidesAre::old) {
+        if (at == DepositAt::step) {
           side = m_.work.sheets.side(m_.problem.mesh, m_.problem.rigid, m_.state.rigid, cell, columns.x.of(i), side);
           columns.side.set(i, side.number());
         }

@@ -4,72 +4,17 @@
 #include "solver/model/model.hpp"
 #include "solver/transfer/contributions.hpp"
 #include "solver/transfer/kernel_rows.hpp"
+#include "solver/strips/reference.hpp"
 #include "solver/transfer/strip_scratch.hpp"
+#include "solver/transfer/vertex_motion.hpp"
 
 namespace talus {
 
-/// The centres of the linear shape functions of a cell relative to its origin [m].
-template <int D, Kernel<D> K>
-std::array<Vec<D>, D + 1> arms_of(const Mesh<D>& mesh, const KernelRows<D, K>& of, Index cell, const Vec<D>& origin) noexcept
-{
-  std::array<Vec<D>, D + 1> arms;
-  for (std::size_t a = 0; a <= D; ++a) {
-    const Index node = mesh.cell(cell)[a];
-    if constexpr (KernelRows<D, K>::projects)
-      arms[a] = of.kernel.node_operators().centre(node) - origin;
-    else
-      arms[a] = mesh.node(node) - origin;
-  }
-  return arms;
-}
-
-/// What the particles of a cell read at its vertices.
-template <int D, Kernel<D> K>
-class VertexMotion {
- public:
-  /// `body` is that of the particles, `none` if their strain is not asked for.
-  VertexMotion(const Model<D>& m, const KernelRows<D, K>& of, Index body, Index cell) noexcept
-  {
-    const auto nodes = m.problem.mesh.cell(cell);
-    const bool musl = m.problem.transfer.uses_musl();
-    if constexpr (KernelRows<D, K>::projects) {
-      for (std::size_t a = 0; a <= D; ++a) {
-        const auto n = static_cast<std::size_t>(nodes[a]);
-        const ProjectedNodeMotion<D>& motion = of.projected.motion[n];
-        v[a] = &motion.v, change[a] = &motion.change, L[a] = &motion.L;
-        strain[a] = musl ? &of.gradient_of_remapped[n] : L[a];
-        if (body != none && of.interfaces.is_mixed(nodes[a]))
-          strain[a] = &of.interfaces.gradient(nodes[a], body);
-      }
-    } else {
-      const auto& gradients = m.problem.mesh.gradients(cell);
-      for (Mat<D>& gradient : of_cell_)
-        gradient.setZero();
-      for (std::size_t a = 0; a <= D; ++a) {
-        const auto n = static_cast<std::size_t>(nodes[a]);
-        const NodeMotion<D>& motion = nodes_of(m, of).motion[n];
-        v[a] = &motion.v, change[a] = &motion.change, L[a] = &of_cell_[0], strain[a] = &of_cell_[musl ? 1 : 0];
-        of_cell_[0] += motion.v * gradients[a].transpose();
-        if (musl)
-          of_cell_[1] += nodes_of(m, of).remapped[n].v * gradients[a].transpose();
-      }
-    }
-  }
-  VertexMotion(const VertexMotion&) = delete;
-  VertexMotion& operator=(const VertexMotion&) = delete;
-
-  std::array<const Vec<D>*, D + 1> v, change;  ///< [m/s]
-  /// Velocity gradients, and those that strain the particles: of the remapped velocities under MUSL, and of their group [1/s].
-  std::array<const Mat<D>*, D + 1> L, strain;
-
- private:
-  Mat<D> of_cell_[2];
-};
-
-/// Velocity gradients of particles of a body at positions x: L, which strains them, and with `with_affine` the affine field C.
+/// Velocity gradients of particles of a body at positions x: L, which strains them, and with `with_affine` the affine field C; of the
+/// remapped velocities under MUSL, and else the same, is L.
 template <int D, Kernel<D> K>
 TALUS_ONE_COPY void read_gradients(const Model<D>& m, const KernelRows<D, K>& of, Index body, const StripColumn<Vec<D>>& x,
-                                   bool with_affine, StripScratch<D>& scratch) noexcept
+                                   const StripColumn<Mat<D>>& L, const StripColumn<Mat<D>>& C, const StripScratch<D>& scratch) noexcept
 {
   for (const CellRun<D>& run : scratch.runs) {
     const VertexMotion<D, K> motion(m, of, body, run.frame->cell);
@@ -86,18 +31,18 @@ TALUS_ONE_COPY void read_gradients(const Model<D>& m, const KernelRows<D, K>& of
           store_loose(to.component(k) + i, sum);
         }
       };
-      store_sum(motion.strain, scratch.L);
-      if (with_affine)
-        store_sum(motion.L, scratch.C);
+      store_sum(motion.strain, L);
+      if (C)
+        store_sum(m.problem.transfer.own_affine_field() ? motion.L : motion.strain, C);
     }
   }
 }
 
 /// Computes the contributions of n particles.
-template <bool affine, bool loaded, bool moments, int D>
+template <bool affine, bool loaded, bool moments, bool pulled, int D>
 TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch) noexcept
 {
-  using Of = Contribution<D, affine, loaded, moments>;
+  using Of = Contribution<D, affine, loaded, moments, pulled>;
   for (std::size_t i = 0; i < n; i += pack_size) {
     scratch.ahead.next();
     Pack q[Of::padded_size]{};
@@ -120,9 +65,15 @@ TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size
     for (int d = 0; d < D; ++d)
       q[d] = m * v[d];
     q[Of::mass] = m;
-    for (int d = 0; d < D; ++d)
-      for (int e = d; e < D; ++e)
-        q[Of::tension + Symmetric<D>::place(d, e)] = volume * load_loose(columns.stress.component(Symmetric<3>::place(d, e)) + i);
+    if constexpr (pulled) {
+      const MatOf<D> tension = pulled_back_tension(columns, i);
+      for (int k = 0; k < D * D; ++k)
+        q[Of::tension + k] = tension(k).of;
+    } else {
+      for (int d = 0; d < D; ++d)
+        for (int e = d; e < D; ++e)
+          q[Of::tension + Symmetric<D>::place(d, e)] = volume * load_loose(columns.stress.component(Symmetric<3>::place(d, e)) + i);
+    }
     if constexpr (loaded)
       for (int d = 0; d < D; ++d) {
         q[Of::load + d] = load_loose(columns.applied.component(d) + i);
@@ -184,10 +135,10 @@ void add_to(const CornerSums<D, Of>& sums, const CellFrame<D>& frame, std::span<
             float lightest) noexcept
 {
   constexpr bool projects = std::is_same_v<Row, ProjectedNodeSum<D>>;
-  [[maybe_unused]] Symmetric<D> tension{};
+  [[maybe_unused]] Mat<D> tension = Mat<D>::Zero();
   if constexpr (!projects)
     for (std::size_t a = 0; a <= D; ++a)
-      add_numbers<Symmetric<D>::size>(sums.of[a] + Of::tension, tension.entry);
+      tension += Of::tension_in(sums.of[a]);
   for (std::size_t a = 0; a <= D; ++a) {
     Row& row = rows[slots[a]];
     const Real* const of = sums.of[a];
@@ -201,7 +152,7 @@ void add_to(const CornerSums<D, Of>& sums, const CellFrame<D>& frame, std::span<
     if constexpr (projects) {
       if constexpr (affine)
         add_numbers<D * D>(of + Of::field, row.affine.data());
-      add_numbers<Symmetric<D>::size>(of + Of::tension, row.tension.entry);
+      row.tension += Of::tension_in(of);
     } else {
       row.gross += static_cast<float>(of[Of::mass]);
       for (int i = 0; i < D; ++i)
@@ -219,7 +170,7 @@ void add_to_group(const CornerSums<D, Of>& sums, const StripColumn<Real>& volume
                   CellGroupSum<D>& sum) noexcept
 {
   for (std::size_t a = 0; a <= D; ++a) {
-    add_numbers<Symmetric<D>::size>(sums.of[a] + Of::tension, sum.tension[a].entry);
+    sum.tension[a] += Of::tension_in(sums.of[a]);
     for (std::size_t i = run.begin; i < run.end; ++i)
       sum.volume[a] += scratch.share[a][i] * volume.first[i];
   }
@@ -238,13 +189,13 @@ void add_volume(const StripColumn<Real>& volume, const CellRun<D>& run, const St
 
 /// Adds the contributions of the first n particles, of a body, to the rows of their block, `with_volume` their volume too, to the moments of
 /// their cells and to the sums of its group; find_shares() has been called.
-template <bool affine, bool loaded, bool with_moments, int D, class Row>
+template <bool affine, bool loaded, bool with_moments, bool pulled, int D, class Row>
 TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
                                   BlockRows<D, Row>& blocks, SparseRows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces,
                                   bool with_volume) noexcept
 {
-  using Of = Contribution<D, affine, loaded, with_moments>;
-  find_contributions<affine, loaded, with_moments>(columns, n, scratch);
+  using Of = Contribution<D, affine, loaded, with_moments, pulled>;
+  find_contributions<affine, loaded, with_moments, pulled>(columns, n, scratch);
   const std::span<Row> rows = blocks.rows(block);
   CornerSums<D, Of> sums;
   for (const CellRun<D>& run : scratch.runs) {
@@ -271,7 +222,7 @@ template <int D, Kernel<D> K>
 class VertexStrips {
  public:
   static constexpr bool keeps_gradients = false;
-  static constexpr int quantities = Contribution<D, true, true, true>::padded_size;
+  static constexpr int quantities = Contribution<D, true, true, true, true>::padded_size;
 
   VertexStrips(const Model<D>& m, StripScratch<D>& scratch) : m_(m), scratch_(scratch) {}
 
@@ -289,16 +240,17 @@ class VertexStrips {
   /// Sets L and, if asked for and different, C of the columns to velocity gradients at positions x in the cells of the open strip.
   void find_gradients(const StripColumn<Vec<D>>& x, bool with_affine, StripColumns<D>& columns) noexcept
   {
-    with_affine = with_affine && m_.work.strips->layout().has_affine();
-    read_gradients(m_, *of_, body_, x, with_affine, scratch_);
-    columns.L = scratch_.L;
-    if (with_affine)
-      columns.C = scratch_.C;
+    if (m_.work.strips->layout().kept_gradients() == 0) {
+      columns.L = scratch_.L;
+      if (with_affine && m_.work.strips->layout().has_affine())
+        columns.C = scratch_.C;
+    }
+    read_gradients(m_, *of_, body_, x, columns.L, columns.C, scratch_);
   }
   /// Velocities and their gradients, and new positions.
   void move(StripColumns<D>& columns, bool with_affine, Real dt, Real pic) noexcept
   {
-    find_gradients(columns.x, with_affine, columns);
+    find_gradients(columns.places(), with_affine, columns);
     m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
   }
   /// Adds the first n particles to the rows of the block.
@@ -320,12 +272,16 @@ class VertexStrips {
   template <bool affine, bool loaded>
   void add(const StripColumns<D>& columns, std::size_t n, Index block)
   {
-    if (m_.problem.transfer.uses_musl())
-      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_->blocks, of_->moments, body_, of_->interfaces,
-                                          of_->extension.any());
-    else
-      deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_->blocks, of_->moments, body_, of_->interfaces,
-                                           of_->extension.any());
+    m_.problem.transfer.uses_musl() ? add<affine, loaded, true>(columns, n, block) : add<affine, loaded, false>(columns, n, block);
+  }
+  template <bool affine, bool loaded, bool moments>
+  void add(const StripColumns<D>& columns, std::size_t n, Index block)
+  {
+    const auto deposit = [&](auto pulled) {
+      deposit_strip<affine, loaded, moments, pulled>(columns, n, scratch_, block, of_->blocks, of_->moments, body_, of_->interfaces,
+                                                     of_->extension.any());
+    };
+    columns.G ? deposit(std::true_type()) : deposit(std::false_type());
   }
   /// Velocities of the particles and their new positions.
   template <bool increments>
@@ -337,7 +293,7 @@ class VertexStrips {
         scratch_.ahead.next();
         const VecOf<D> x = columns.x.load(i);
         Pack share[D + 1];
-        run.frame->shares(columns.x, i, share);
+        run.frame->shares(columns.places(), i, share);
         // The next run has not read its places and velocities yet: they must stay behind the end of this one.
         SimdReal::Mask mine;
         for (int lane = 0; lane < pack_size; ++lane)

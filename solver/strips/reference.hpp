@@ -1,0 +1,107 @@
+#pragma once
+// Reference configurations: the kernel weighs a particle where it was when its body was last renewed, not where it is.
+#include <cmath>
+
+#include "core/tensor.hpp"
+#include "solver/strips/strip.hpp"
+
+namespace talus {
+
+// A-ULMPM (Su, Xue, Han, Jiang and Aanjaneya 2022, arXiv 2108.00388) with the operators of Talus.  A particle at x has a reference position X,
+// and G = dx/dX.  Weights, cells and the affine field belong to X.  With H = dv/dX, of the nodes,
+//
+//     G <- G + dt H          L = H G^-1          Z_n = sum N_n V sigma G^-T          (x and v as ever)
+//
+// so that F <- (I + dt L) F keeps F = G F_r to rounding, with F_r that of the reference.  Renewed: X = x, C <- C G^-1, G = I.  Always renewed,
+// this is the updated Lagrangian form; never renewed, the total Lagrangian one.
+
+/// The inverse of G of particles i to i + 3, one per lane.
+template <int D>
+[[gnu::always_inline]] inline MatOf<D> inverse_of(const StripColumn<Mat<D>>& G, std::size_t i) noexcept
+{
+  const MatOf<D> A = G.load(i);
+  MatOf<D> adjugate;
+  if constexpr (D == 2) {
+    adjugate(0, 0) = A(1, 1), adjugate(0, 1) = -A(0, 1), adjugate(1, 0) = -A(1, 0), adjugate(1, 1) = A(0, 0);
+  } else {
+    for (int r = 0; r < D; ++r)
+      for (int c = 0; c < D; ++c) {
+        const int r1 = (r + 1) % D, r2 = (r + 2) % D, c1 = (c + 1) % D, c2 = (c + 2) % D;
+        adjugate(c, r) = A(r1, c1) * A(r2, c2) - A(r1, c2) * A(r2, c1);
+      }
+  }
+  SimdReal det = A(0, 0) * adjugate(0, 0);
+  for (int k = 1; k < D; ++k)
+    det += A(0, k) * adjugate(k, 0);
+  const SimdReal per_det = SimdReal(1.0) / det;
+  for (int k = 0; k < D * D; ++k)
+    adjugate(k) *= per_det;
+  return adjugate;
+}
+
+/// V sigma G^-T of particles i to i + 3 [N m].
+template <int D>
+[[gnu::always_inline]] inline MatOf<D> pulled_back_tension(const StripColumns<D>& columns, std::size_t i) noexcept
+{
+  const MatOf<D> tension = columns.volume.load(i) * unpack(columns.stress.load(i)).template topLeftCorner<D, D>();
+  return tension.lazyProduct(inverse_of<D>(columns.G, i).transpose());
+}
+
+/// Multiplies V sigma of particle p by G^-T, if there are references.
+template <int D>
+void pull_back(const StripColumns<D>& columns, std::size_t p, Mat<D>& tension) noexcept
+{
+  if (columns.G)
+    tension = (tension * columns.G.of(p).inverse().transpose()).eval();
+}
+/// V sigma of particle p, pulled back to its reference [N m].
+template <int D>
+Mat<D> tension_of(const StripColumns<D>& columns, std::size_t p) noexcept
+{
+  Mat<D> tension = columns.volume.of(p) * unpack(columns.stress.of(p)).template topLeftCorner<D, D>();
+  pull_back(columns, p, tension);
+  return tension;
+}
+
+/// L of the first n particles has been taken with respect to reference positions: makes it that of the present ones, and moves G with it.
+template <int D>
+void follow_motion(const StripColumns<D>& columns, std::size_t n, Real dt) noexcept
+{
+  columns.G.pad(n), columns.L.pad(n);
+  for (std::size_t i = 0; i < n; i += pack_size) {
+    const MatOf<D> H = columns.L.load(i), G = columns.G.load(i);
+    columns.L.store(i, H.lazyProduct(inverse_of<D>(columns.G, i)));
+    columns.G.store(i, G + SimdReal(dt) * H);
+  }
+}
+
+/// The largest entry of |G^T G - I| / 2 of particle i: Green's strain since the reference.
+template <int D>
+Real distortion(const StripColumns<D>& columns, std::size_t i) noexcept
+{
+  const Mat<D> G = columns.G.of(i);
+  return 0.5 * (G.transpose() * G - Mat<D>::Identity()).cwiseAbs().maxCoeff();
+}
+
+/// The least stretch since the reference of particle i, or less: by row sums of (G G^T)^-1 (Gershgorin).  A wave crosses a cell of the
+/// reference in that share of the time.
+template <int D>
+Real least_stretch(const StripColumns<D>& columns, std::size_t i) noexcept
+{
+  const Mat<D> inverse = columns.G.of(i).inverse();
+  return 1 / std::sqrt((inverse.transpose() * inverse).cwiseAbs().rowwise().sum().maxCoeff());
+}
+
+/// Makes the present configuration of the first n particles their reference.
+template <int D>
+void renew(const StripColumns<D>& columns, std::size_t n) noexcept
+{
+  for (std::size_t i = 0; i < n; ++i) {
+    if (columns.C)
+      columns.C.set(i, columns.C.of(i) * columns.G.of(i).inverse());
+    columns.G.set(i, Mat<D>::Identity());
+    columns.reference.set(i, columns.x.of(i));
+  }
+}
+
+}  // namespace talus
