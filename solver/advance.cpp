@@ -169,8 +169,11 @@ void find_renewed_bodies(Model<D>& m)
       most[to_size(body)] = parallel_min(strips.blocks(), Real{0}, [&](Index block) {
         Real least = 0;
         for (const Strip& strip : strips.strips(strips.key(body, block)))
-          for (std::size_t i = 0; i < to_size(strip.n); ++i)
-            least = std::min(least, -distortion(strips.columns(strip), i));
+          for (std::size_t i = 0; i < to_size(strip.n); i += pack_size) {
+            const SimdReal one = distortion(strips.columns(strip), i);
+            for (std::size_t lane = 0; lane < pack_size && i + lane < to_size(strip.n); ++lane)
+              least = std::min(least, -one[static_cast<int>(lane)]);
+          }
         return least;
       });
   std::int64_t no_word = 0;

@@ -75,21 +75,50 @@ void follow_motion(const StripColumns<D>& columns, std::size_t n, Real dt) noexc
   }
 }
 
-/// The largest entry of |G^T G - I| / 2 of particle i: Green's strain since the reference.
+/// The largest entries of |G^T G - I| / 2 of particles i to i + 3: Green's strain since the reference.
 template <int D>
-Real distortion(const StripColumns<D>& columns, std::size_t i) noexcept
+[[gnu::always_inline]] inline SimdReal distortion(const StripColumns<D>& columns, std::size_t i) noexcept
 {
-  const Mat<D> G = columns.G.of(i);
-  return 0.5 * (G.transpose() * G - Mat<D>::Identity()).cwiseAbs().maxCoeff();
+  const MatOf<D> G = columns.G.load(i);
+  const MatOf<D> C = G.transpose().lazyProduct(G);
+  SimdReal most = abs(C(0, 0) - SimdReal(1.0));
+  for (int r = 0; r < D; ++r)
+    for (int c = r; c < D; ++c)
+      most = max(most, abs(r == c ? C(r, c) - SimdReal(1.0) : C(r, c)));
+  return SimdReal(0.5) * most;
 }
 
-/// The least stretch since the reference of particle i, or less: by row sums of (G G^T)^-1 (Gershgorin).  A wave crosses a cell of the
-/// reference in that share of the time.
+/// Whether one of particles [begin, end) of a strip has a larger distortion than `strain`, or is farther than `reach` [m] from its reference.
 template <int D>
-Real least_stretch(const StripColumns<D>& columns, std::size_t i) noexcept
+bool is_beyond(const StripColumns<D>& columns, std::size_t begin, std::size_t end, Real strain, Real reach) noexcept
 {
-  const Mat<D> inverse = columns.G.of(i).inverse();
-  return 1 / std::sqrt((inverse.transpose() * inverse).cwiseAbs().rowwise().sum().maxCoeff());
+  for (std::size_t i = begin; i < end; i += pack_size) {
+    const VecOf<D> shift = columns.x.load(i) - columns.reference.load(i);
+    const SimdReal::Mask beyond = distortion(columns, i) > SimdReal(strain) || shift.squaredNorm() > SimdReal(reach * reach);
+    for (std::size_t lane = 0; lane < pack_size && i + lane < end; ++lane)
+      if (beyond[static_cast<int>(lane)])
+        return true;
+  }
+  return false;
+}
+
+/// Multiplies the altitudes of the first n particles by their least stretch since the reference, or less: by row sums of (G G^T)^-1
+/// (Gershgorin).  A wave crosses a cell of the reference in that share of the time.
+template <int D>
+void shorten(const StripColumns<D>& columns, std::size_t n, Real* altitude) noexcept
+{
+  for (std::size_t i = 0; i < n; i += pack_size) {
+    const MatOf<D> inverse = inverse_of<D>(columns.G, i);
+    const MatOf<D> B = inverse.transpose().lazyProduct(inverse);
+    SimdReal most(0.0);
+    for (int r = 0; r < D; ++r) {
+      SimdReal sum = abs(B(r, 0));
+      for (int c = 1; c < D; ++c)
+        sum += abs(B(r, c));
+      most = max(most, sum);
+    }
+    store_loose(altitude + i, (SimdReal(load_loose(altitude + i)) / sqrt(most)).of);
+  }
 }
 
 /// Makes the present configuration of the first n particles their reference.

@@ -145,6 +145,7 @@ struct Strip {
   Real* numbers = nullptr;
   Index room = 0, n = 0;
   std::array<Index, strip_cells> count{};  ///< particles of each cell
+  Index arrangement = 0;                   ///< counts the changes of its particles and of their references
   Real* loaded_gradients = nullptr;        ///< arrays of gradients before the first sweep
 
   Real* array(Index k) const noexcept { return numbers + static_cast<std::size_t>(k) * static_cast<std::size_t>(room); }

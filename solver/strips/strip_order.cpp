@@ -58,6 +58,7 @@ void ParticleStrips<D>::order(std::size_t key, Index number)
   rearrangement.move(strip.numbers, room, layout_.step_arrays().before, 0);  // the step is about to write the other arrays of the layout
   rearrangement.move(strip.array(first_of_law()), room, history_width(body(key)), layout_.width() + layout_.gradients());
   strip.n = n;
+  ++strip.arrangement;
   if (n == 0 && strip.room > 0) {
     pool_->give_back(strip.numbers, room * strip_width(key));
     strip.numbers = nullptr, strip.room = 0;

@@ -9,29 +9,6 @@
 
 namespace talus {
 
-/// A cell, the weights of its particles, and the sums over them.
-template <int D, Kernel<D> K>
-struct DirectCell {
-  typename K::Cell cell;
-  Weights<D, K::max_nodes> weights;
-  CellSums<D, K::max_nodes> sums;
-  CellMotion<D, K::max_nodes> motion;
-
-  /// Computes the weights of `count` particles from number i on; of those that do not stay at the origin, which is in the cell.
-  void place(const K& kernel, const StripColumn<Vec<D>>& places, std::size_t i, int count, const std::uint8_t* stays, Pack (&x)[D]) noexcept
-  {
-    for (int d = 0; d < D; ++d)
-      x[d] = load_loose(places.component(d) + i);
-    if (count < pack_size || std::find(stays + i, stays + i + pack_size, 0) != stays + i + pack_size)
-      for (int lane = 0; lane < pack_size; ++lane) {
-        const std::size_t p = i + static_cast<std::size_t>(std::min(lane, count - 1));
-        for (int d = 0; d < D; ++d)
-          x[d][lane] = stays[p] != 0 ? places.component(d)[p] : cell.origin[d];
-      }
-    kernel.evaluate(cell, x, count, weights);
-  }
-};
-
 /// Whether the force of particles uses the slopes of their weights.
 template <int D, Kernel<D> K>
 bool pairs_force_with_slopes([[maybe_unused]] const K& kernel) noexcept
@@ -42,6 +19,56 @@ bool pairs_force_with_slopes([[maybe_unused]] const K& kernel) noexcept
     return false;
 }
 
+/// A cell, the weights of its particles, and the sums over them.
+template <int D, Kernel<D> K>
+class DirectCell {
+ public:
+  typename K::Cell cell;
+  Weights<D, K::max_nodes> weights;
+  CellSums<D, K::max_nodes> sums;
+  CellMotion<D, K::max_nodes> motion;
+  LaneSlopes<D, K::max_nodes> slopes[HasSlopesOfValues<K, D> ? pack_size : 1];  ///< if the force uses them
+  KeptWeights<D, K::max_nodes>* kept = nullptr;                                 ///< of the strip, if they are kept or read
+  KeptUse use = KeptUse::compute;
+
+  void begin_run(const CellRun<D>& run, const std::vector<CellRun<D>>& runs) noexcept
+  {
+    if (kept != nullptr)
+      kept->begin_run(use, static_cast<std::size_t>(&run - runs.data()));
+  }
+
+  /// Finds the weights of `count` particles from number i on; of those that do not stay at the origin, which is in the cell.  With
+  /// `with_slopes` also their slopes.
+  void place(const K& kernel, const StripColumn<Vec<D>>& places, std::size_t i, int count, const std::uint8_t* stays, bool with_slopes)
+  {
+    LaneSlopes<D, K::max_nodes>* const kept_slopes = pairs_force_with_slopes<D>(kernel) ? slopes : nullptr;
+    if (use == KeptUse::read)
+      return kept->read(cell, count, weights, kept_slopes);
+    compute(kernel, places, i, count, stays, with_slopes || (use == KeptUse::keep && kept_slopes != nullptr));
+    if (use == KeptUse::keep)
+      kept->keep(cell, count, weights, kept_slopes);
+  }
+
+ private:
+  void compute(const K& kernel, const StripColumn<Vec<D>>& places, std::size_t i, int count, const std::uint8_t* stays,
+               [[maybe_unused]] bool with_slopes) noexcept
+  {
+    Pack x[D];
+    for (int d = 0; d < D; ++d)
+      x[d] = load_loose(places.component(d) + i);
+    if (count < pack_size || std::find(stays + i, stays + i + pack_size, 0) != stays + i + pack_size)
+      for (int lane = 0; lane < pack_size; ++lane) {
+        const std::size_t p = i + static_cast<std::size_t>(std::min(lane, count - 1));
+        for (int d = 0; d < D; ++d)
+          x[d][lane] = stays[p] != 0 ? places.component(d)[p] : cell.origin[d];
+      }
+    kernel.evaluate(cell, x, count, weights);
+    if constexpr (HasSlopesOfValues<K, D>)
+      for (int lane = 0; with_slopes && lane < count; ++lane)
+        kernel.slopes_of_values(cell, x, lane, weights, slopes[lane].dw);
+  }
+};
+
 /// Adds particles [run.begin, run.end) to `at.sums`.
 template <bool affine, bool loaded, bool forces, int D, Kernel<D> K>
 void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<D>& run, StripScratch<D>& scratch,
@@ -51,18 +78,14 @@ void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<
   for (std::size_t i = run.begin; i < run.end; i += pack_size) {
     scratch.ahead.next();
     const int count = run.count(i);
-    Pack x[D];
-    at.place(kernel, columns.places(), i, count, stays, x);
     const bool exact = forces && pairs_force_with_slopes<D>(kernel);
+    at.place(kernel, columns.places(), i, count, stays, exact);
     const Tension<D> tension = forces && !exact ? tension_of(columns, i, at.weights) : Tension<D>{};
     deposit<affine, loaded, forces>(columns, i, count, stays, at.cell, at.weights, tension, at.sums);
     if constexpr (HasSlopesOfValues<K, D>)
       for (int lane = 0; exact && lane < count; ++lane)
-        if (const std::size_t p = i + static_cast<std::size_t>(lane); stays[p] != 0) {
-          alignas(64) Real slopes[D][K::max_nodes];
-          kernel.slopes_of_values(at.cell, x, lane, at.weights, slopes);
-          deposit_force(columns, p, slopes, at.weights.padded_size[lane], at.sums);
-        }
+        if (const std::size_t p = i + static_cast<std::size_t>(lane); stays[p] != 0)
+          deposit_force(columns, p, at.slopes[lane].dw, at.weights.padded_size[lane], at.sums);
   }
 }
 
@@ -76,6 +99,7 @@ TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const
     if (!lightest)
       continue;
     kernel.open(mesh, run.frame->cell, at.cell);
+    at.begin_run(run, scratch.runs);
     at.sums.clear(at.cell.padded_size);
     deposit_run<affine, loaded, true>(kernel, columns, run, scratch, at);
     at.sums.add_to(blocks.rows(block), blocks.slots(run.frame->cell), *lightest);
@@ -91,11 +115,12 @@ TALUS_ONE_COPY void add_virtual_stress(const K& kernel, const Mesh<D>& mesh, con
   const std::span<SurfaceSum<D>> rows = blocks.rows(block);
   for (const CellRun<D>& run : scratch.runs) {
     kernel.open(mesh, run.frame->cell, at.cell);
+    at.begin_run(run, scratch.runs);
     const std::span<const std::uint16_t> slots = blocks.slots(run.frame->cell);
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
       const int count = run.count(i);
-      Pack x[D];
-      at.place(kernel, columns.places(), i, count, scratch.stays.data(), x);
+      const bool exact = pairs_force_with_slopes<D>(kernel);
+      at.place(kernel, columns.places(), i, count, scratch.stays.data(), exact);
       for (int lane = 0; lane < count; ++lane) {
         const std::size_t p = i + static_cast<std::size_t>(lane);
         if (scratch.stays[p] == 0)
@@ -103,12 +128,8 @@ TALUS_ONE_COPY void add_virtual_stress(const K& kernel, const Mesh<D>& mesh, con
         NodeWeights<D, K::max_nodes> of;
         at.weights.spell_out(lane, of);
         if constexpr (HasSlopesOfValues<K, D>)
-          if (pairs_force_with_slopes<D>(kernel)) {
-            alignas(64) Real slopes[D][K::max_nodes];
-            kernel.slopes_of_values(at.cell, x, lane, at.weights, slopes);
-            for (int d = 0; d < D; ++d)
-              std::copy_n(slopes[d], at.weights.padded_size[lane], of.dw[d]);
-          }
+          for (int d = 0; exact && d < D; ++d)
+            std::copy_n(at.slopes[lane].dw[d], at.weights.padded_size[lane], of.dw[d]);
         const Real volume = columns.volume.of(p);
         VirtualStress<D> stress =
             virtual_stress<D>(load, columns.id[p], columns.F.of(p).template topLeftCorner<D, D>(), columns.volume0.of(p), volume);
@@ -135,16 +156,20 @@ class DirectStrips {
 
   DirectStrips(const Model<D>& m, StripScratch<D>& scratch) : m_(m), scratch_(scratch) {}
 
-  void take(KernelRows<D, K>& of, Index) noexcept { of_ = &of; }  ///< all bodies of a field alike
+  void take(KernelRows<D, K>& of, Index) noexcept { of_ = &of, strip_ = nullptr; }  ///< all bodies of a field alike
+  /// Says that the particles that come next are those of a strip of this number.
+  void take_strip(const Strip& strip, std::size_t number) noexcept { strip_ = &strip, number_ = number; }
   void open(CellFrame<D>&) const noexcept {}
   static void clear(KernelRows<D, K>&, const Model<D>&, Index) noexcept {}
   void find_gradients(const StripColumn<Vec<D>>&, bool, StripColumns<D>&) const noexcept {}
 
   void move(StripColumns<D>& columns, bool, Real dt, Real pic) noexcept
   {
-    if (m_.problem.transfer.uses_musl())
-      return move_with_remapped_gradient(columns, dt);
-    m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
+    in_pass(columns, [&] {
+      if (m_.problem.transfer.uses_musl())
+        return move_with_remapped_gradient(columns, dt);
+      m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
+    });
   }
   void add(const StripColumns<D>& columns, std::size_t, Index block)
   {
@@ -155,33 +180,48 @@ class DirectStrips {
   }
   void add_surface_load(const SurfaceLoad<D>& load, const StripColumns<D>& columns, Index block, BlockRows<D, SurfaceSum<D>>& blocks)
   {
-    add_virtual_stress(of_->kernel, m_.problem.mesh, load, columns, scratch_, block, blocks, at_);
+    in_pass(columns, [&] { add_virtual_stress(of_->kernel, m_.problem.mesh, load, columns, scratch_, block, blocks, at_); });
   }
   /// MUSL: new velocities and the affine field; adds their momentum to the rows of the block with the same weights.
   void return_momentum(StripColumns<D>& columns, Real pic, Index block) noexcept
   {
-    if (!m_.problem.transfer.affine())
-      return_momentum<true, false>(columns, pic, block);
-    else
+    in_pass(columns, [&] {
+      if (!m_.problem.transfer.affine())
+        return return_momentum<true, false>(columns, pic, block);
       m_.problem.transfer.increments() ? return_momentum<true, true>(columns, pic, block)
                                        : return_momentum<false, true>(columns, pic, block);
+    });
   }
 
  private:
+  /// A pass over particles: keeps the weights of those of a strip that have references, or reads those that are kept.
+  template <class F>
+  void in_pass(const StripColumns<D>& columns, F&& pass)
+  {
+    if (strip_ != nullptr && columns.G) {
+      at_.kept = &of_->kept[number_];
+      const bool all_stay = std::find(scratch_.stays.begin(), scratch_.stays.end(), 0) == scratch_.stays.end();
+      at_.use = at_.kept->begin(strip_->arrangement, scratch_.runs.size(), all_stay);
+    }
+    pass();
+    if (at_.use == KeptUse::keep)
+      at_.kept->end(strip_->arrangement);
+    at_.kept = nullptr, at_.use = KeptUse::compute;
+  }
   template <bool affine, bool loaded>
   void add(const StripColumns<D>& columns, Index block)
   {
-    deposit_directly<affine, loaded>(of_->kernel, m_.problem.mesh, columns, scratch_, block, of_->blocks, at_);
+    in_pass(columns, [&] { deposit_directly<affine, loaded>(of_->kernel, m_.problem.mesh, columns, scratch_, block, of_->blocks, at_); });
   }
   /// Opens the cell of a run with the motion of its nodes, and calls f(i, count) for its packs, with their weights.
   void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const SparseRows<NodeMotion<D>>& motion, auto&& f) noexcept
   {
     of_->kernel.open(m_.problem.mesh, run.frame->cell, at_.cell);
+    at_.begin_run(run, scratch_.runs);
     at_.motion.read(motion, at_.cell.nodes, at_.cell.padded_size);
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
       scratch_.ahead.next();
-      Pack x[D];
-      at_.place(of_->kernel, places, i, run.count(i), scratch_.stays.data(), x);
+      at_.place(of_->kernel, places, i, run.count(i), scratch_.stays.data(), false);
       f(i, run.count(i));
     }
   }
@@ -279,6 +319,8 @@ class DirectStrips {
   const Model<D>& m_;
   KernelRows<D, K>* of_ = nullptr;
   StripScratch<D>& scratch_;
+  const Strip* strip_ = nullptr;  ///< null for particles that come from elsewhere
+  std::size_t number_ = 0;        ///< of the strip among all
   DirectCell<D, K> at_;
 };
 

@@ -8,6 +8,7 @@
 #include "solver/transfer/cell_moments.hpp"
 #include "solver/transfer/extension.hpp"
 #include "solver/transfer/interfaces.hpp"
+#include "solver/transfer/kept_weights.hpp"
 #include "solver/transfer/projected_nodes.hpp"
 #include "solver/transfer/surface_rows.hpp"
 
@@ -39,6 +40,7 @@ struct KernelRows {
   ProjectedNodes<D> projected;
   Interfaces<D> interfaces;
   Extension<D> extension;
+  std::vector<KeptWeights<D, K::max_nodes>> kept;  ///< of each strip of a key, where bodies have references and weights are not cheap
   SparseRows<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
 
   KernelRows(const Mesh<D>& mesh, const K& of_kernel, std::size_t number)

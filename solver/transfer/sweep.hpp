@@ -146,6 +146,7 @@ class BlockSweep {
   {
     const Strip& strip = strips_.strips(key)[static_cast<std::size_t>(number)];
     take(strips_.group(key));
+    through_.take_strip(strip, key * to_size(strips_in_block) + to_size(number));
     begin_runs(static_cast<std::size_t>(strip.n));
     std::size_t begin = 0;
     for (Index c = 0; c < strip_cells; ++c) {
@@ -231,8 +232,7 @@ class BlockSweep {
     for (const CellRun<D>& run : scratch_.runs)
       std::fill(scratch_.altitude + run.begin, scratch_.altitude + run.end + strip_padding - 1, run.frame->altitude);
     if (columns.G)
-      for (std::size_t i = 0; i < n; ++i)
-        scratch_.altitude[i] *= least_stretch(columns, i);
+      shorten(columns, n, scratch_.altitude);
     const StripColumn<Real> pore_after = find_pore_pressures(body, columns, dt);
     columns.v.pad(n), columns.L.pad(n), columns.F.pad(n), columns.stress.pad(n);
     columns.mass.pad(n), columns.volume0.pad(n), columns.volume.pad(n);
@@ -289,7 +289,7 @@ class BlockSweep {
     const std::size_t n = scratch_.runs.back().end;
     find_forces(m_, time, columns, n);
     if (columns.G && at == DepositAt::step && is_renewed(strips_.body(key), columns))
-      renew(columns, n);
+      renew(columns, n), ++strips_.strips(key)[to_size(number)].arrangement;
     find_shares(columns.places(), scratch_);
     if (columns.side)
       find_sides(columns, at);
@@ -314,10 +314,7 @@ class BlockSweep {
     const Real strain = options.distortion.value_or(ReferenceOptions::default_distortion);
     return std::ranges::any_of(scratch_.runs, [&](const CellRun<D>& run) {
       const Real reach = options.shift.value_or(ReferenceOptions::default_shift) * run.frame->altitude;
-      for (std::size_t i = run.begin; i < run.end; ++i)
-        if (distortion(columns, i) > strain || (columns.x.of(i) - columns.reference.of(i)).squaredNorm() > reach * reach)
-          return true;
-      return false;
+      return is_beyond(columns, run.begin, run.end, strain, reach);
     });
   }
   /// Finds the sides of sheets that particles are on, unless they are known, and lists the particles that change theirs as leavers.

@@ -229,6 +229,7 @@ class VertexStrips {
   void open(CellFrame<D>& frame) const noexcept { frame.arms = arms_of(m_.problem.mesh, *of_, frame.cell, frame.origin); }
   /// Says of which body the particles are that come next, and which rows are those of its velocity field.
   void take(KernelRows<D, K>& of, Index body) noexcept { of_ = &of, body_ = body; }
+  void take_strip(const Strip&, std::size_t) const noexcept {}  ///< weights are not kept
   /// Clears what is summed apart from the rows of a block.
   static void clear(KernelRows<D, K>& of, const Model<D>& m, Index block) noexcept
   {
