@@ -3,7 +3,6 @@
 #include "core/stop_watch.hpp"
 #include "solver/rigid/rigid_contacts.hpp"
 #include "solver/state/integrate.hpp"
-#include "solver/strips/reference.hpp"
 
 namespace talus {
 
@@ -154,32 +153,23 @@ void record_node_sums(Model<D>& m)
   work.rigid.add_sums(problem.mesh, state.rigid, work.fields, work.sums.rigid);
 }
 
-/// Finds the bodies that are renewed as a whole at the end of the step, by their distortion before it.
+/// Finds the bodies that take a new reference at the end of the step, by what their particles were at its beginning.  Bodies of one velocity
+/// field do so together.
 template <int D>
 void find_renewed_bodies(Model<D>& m)
 {
-  const std::vector<ReferenceOptions>& references = m.problem.references;
-  m.work.renewed.assign(references.size(), 0);
-  if (std::ranges::none_of(references, &ReferenceOptions::renews_whole))
+  if (!m.problem.columns.reference)
     return;
-  const ParticleStrips<D>& strips = *m.work.strips;
-  std::vector<Real> most(references.size(), 0);  // with the sign turned, for the least of all ranks
-  for (Index body = 0; body < m.n_bodies(); ++body)
-    if (references[to_size(body)].renews_whole())
-      most[to_size(body)] = parallel_min(strips.blocks(), Real{0}, [&](Index block) {
-        Real least = 0;
-        for (const Strip& strip : strips.strips(strips.key(body, block)))
-          for (std::size_t i = 0; i < to_size(strip.n); i += pack_size) {
-            const SimdReal one = distortion(strips.columns(strip), i);
-            for (std::size_t lane = 0; lane < pack_size && i + lane < to_size(strip.n); ++lane)
-              least = std::min(least, -one[static_cast<int>(lane)]);
-          }
-        return least;
-      });
+  std::vector<Real> least(m.problem.fields_in_front(), 0);  // of each field; -1 where a body is due
+  for (std::size_t key = 0; key < m.work.due.size(); ++key)
+    if (m.work.due[key] != 0)
+      least[m.problem.field_of(m.work.strips->body(key), false)] = -1;
   std::int64_t no_word = 0;
-  m.problem.ranks->least(most, no_word);
-  for (std::size_t body = 0; body < most.size(); ++body)
-    m.work.renewed[body] = -most[body] > references[body].distortion.value_or(ReferenceOptions::default_distortion) ? 1 : 0;
+  m.problem.ranks->least(least, no_word);
+  m.work.renewed.clear();
+  for (Index body = 0; body < m.n_bodies(); ++body)
+    m.work.renewed.push_back(m.problem.references[to_size(body)].is_renewed(least[m.problem.field_of(body, false)] < 0) ? 1 : 0);
+  m.work.due.assign(m.work.strips->keys(), 0);
 }
 
 /// Conducts heat within each body whose law has temperature, not through sheets.

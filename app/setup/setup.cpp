@@ -16,6 +16,7 @@
 #include "app/setup/water_table.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
+#include "io/scene/scene_rules.hpp"
 #include "io/system/process.hpp"
 #include "mesh/digest.hpp"
 
@@ -217,6 +218,18 @@ void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravit
       }
 }
 
+/// The reference configuration of each body.  The shift does not count for bodies that can touch nothing.
+std::vector<ReferenceOptions> references_of(const Scene& scene)
+{
+  std::vector<ReferenceOptions> all;
+  for (const BodySpec& body : scene.bodies) {
+    ReferenceOptions& options = all.emplace_back(body.reference.value_or(ReferenceOptions()));
+    if (!options.shift && !contacts_of_body(scene, body).empty())
+      options.shift = ReferenceOptions::default_shift;
+  }
+  return all;
+}
+
 /// Where surfaces are extended, what lies beside them does not rest under its weight.
 void warn_of_creeping_surfaces(const Scene& scene, const std::vector<Stage>& stages, std::vector<std::string>& warnings)
 {
@@ -255,8 +268,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   for (const ContactLaw& law : setup.conditions.contacts.laws)
     setup.notes.push_back(describe(law));
   setup.conditions.cuts = cuts_of(scene);
-  for (const BodySpec& body : scene.bodies)
-    setup.conditions.references.push_back(body.reference.value_or(ReferenceOptions()));
+  setup.conditions.references = references_of(scene);
   for (const CutLaw& law : setup.conditions.cuts)
     setup.notes.push_back(describe(law));
   add_rigid_bodies(scene, mesh, ranks, errors, setup);

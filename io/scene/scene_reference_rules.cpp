@@ -21,31 +21,32 @@ class ReferenceRules : private SceneRuleBase {
       if (const auto material = std::ranges::find(scene_.materials, body.material, &MaterialSpec::name);
           material != scene_.materials.end() && material->law.model()->heat())
         add(path, "heat is conducted between present positions: leave this out, or the conductivity");
-      if (!body.reference->renews_in_parts())
-        notices_no_contact(path, body);
+      if (body.reference->update == ReferenceUpdate::never)
+        for (const std::string& contact : contacts_of_body(scene_, body))
+          add(path + ".update", fmt::format("{}; only `adaptive` knows where the body is", contact));
     }
     return std::move(findings_);
   }
 
- private:
-  /// Where the body is in the mesh does not follow its motion, so that it cannot touch anything later.
-  void notices_no_contact(const std::string& path, const BodySpec& body)
-  {
-    const std::string advice = "; only `update: adaptive`, with a shift, knows where the body is";
-    for (const BodySpec& other : scene_.bodies)
-      if (other.name != body.name)
-        add(path, fmt::format("body \"{}\" would not be touched where it is{}", other.name, advice));
-    for (const RigidSpec& rigid : scene_.rigid)
-      add(path, fmt::format("the rigid body \"{}\" would not be touched where it is{}", rigid.name, advice));
-    for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
-      if (has_dashpots(scene_.boundaries[i]) || std::holds_alternative<FrictionOptions>(scene_.boundaries[i]))
-        add(path, fmt::format("the body would not run along boundaries[{}], or leave it{}", i, advice));
-    if (scene_.water)
-      add(path, fmt::format("water would press where the body was{}", advice));
-  }
 };
 
 }  // namespace
+
+std::vector<std::string> contacts_of_body(const Scene& scene, const BodySpec& body)
+{
+  std::vector<std::string> all;
+  for (const BodySpec& other : scene.bodies)
+    if (other.name != body.name)
+      all.push_back(fmt::format("body \"{}\" would not be touched where it is", other.name));
+  for (const RigidSpec& rigid : scene.rigid)
+    all.push_back(fmt::format("the rigid body \"{}\" would not be touched where it is", rigid.name));
+  for (std::size_t i = 0; i < scene.boundaries.size(); ++i)
+    if (has_dashpots(scene.boundaries[i]) || std::holds_alternative<FrictionOptions>(scene.boundaries[i]))
+      all.push_back(fmt::format("the body would not run along boundaries[{}], or leave it", i));
+  if (scene.water)
+    all.emplace_back("water would press where the body was");
+  return all;
+}
 
 std::vector<Finding> broken_reference_rules(const Scene& scene) { return ReferenceRules(scene).broken(); }
 

@@ -23,6 +23,10 @@ std::vector<Finding> broken_rigid_rules(const Scene& scene);
 /// The errors of the key `reference` of bodies.
 std::vector<Finding> broken_reference_rules(const Scene& scene);
 
+/// What a body can touch that would not know where it is if its reference were never renewed, in words; empty if it stands alone between walls
+/// to which it sticks.
+std::vector<std::string> contacts_of_body(const Scene& scene, const BodySpec& body);
+
 /// The names of kernels in a scene.
 std::vector<std::string> kernel_names();
 

@@ -25,7 +25,8 @@ template <int D>
 struct Workspace {
   std::optional<ParticleStrips<D>> strips;  ///< between begin_sweeps() and end_sweeps(): the particles, instead of their columns
   CellOrder order;
-  std::vector<std::uint8_t> renewed;  ///< bodies that are renewed as a whole at the end of this step, see ReferenceOptions
+  std::vector<std::uint8_t> renewed;  ///< bodies that take a new reference at the end of this step
+  std::vector<std::uint8_t> due;      ///< keys of strips with particles for which their body needs one
   TrackedIds carriers;  ///< particles that carry tractions
   Migration<D> migration;
   ParticleErrors errors;

@@ -22,30 +22,32 @@ struct ReferenceOptions {
 
   ReferenceUpdate update = ReferenceUpdate::always;
   std::optional<Real> distortion;  ///< largest entry of |G^T G - I| / 2 before it is renewed [-]
-  std::optional<Real> shift;       ///< largest distance from the reference position, over the altitude of the cell [-]
-  /// Renewed in one piece.  Without a limit of the shift, parts renewed at different times would lie far apart in the mesh.
-  bool whole = false;
+  /// Instead: largest |det G - 1| [-], the criterion of Su, Xue, Han, Jiang & Aanjaneya 2022, who take 0.01 for fluids, 0.5 for soft solids.
+  std::optional<Real> volume_change;
+  std::optional<Real> shift;  ///< largest distance from the reference position, over the altitude of the cell; none: does not count [-]
   static constexpr auto fields()
   {
     return std::tuple{
         optional_choice("update", &ReferenceOptions::update,
-                        "always: in each step (updated Lagrangian); adaptive: where the body has deformed or moved; never: total Lagrangian"),
+                        "always: in each step (updated Lagrangian); adaptive: when the body has strained or moved; never: total Lagrangian"),
         optional("distortion", &ReferenceOptions::distortion, positive, "-",
                  "adaptive: largest strain since the last renewal, as an entry of (G^T G - I) / 2; default 0.05"),
+        optional("volume_change", &ReferenceOptions::volume_change, positive, "-",
+                 "adaptive: largest |det G - 1| since the last renewal; instead of a distortion"),
         optional("shift", &ReferenceOptions::shift, positive, "-",
-                 "adaptive: largest distance from the place of the last renewal, over the smallest altitude of the cell; default 0.1"),
-        optional("whole", &ReferenceOptions::whole, any, "-",
-                 "adaptive: renews the body in one piece and only by its distortion, however far it moves; otherwise eight cells at a time")};
+                 "adaptive: largest distance from the place of the last renewal, over the smallest altitude of the cell; default 0.1, or "
+                 "none for a body that can touch nothing")};
   }
   void check(std::vector<std::string>& problems) const
   {
-    if (update != ReferenceUpdate::adaptive && (distortion || shift || whole))
-      problems.emplace_back("distortion, shift and whole say when `update: adaptive` renews: leave them out, or choose it");
-    if (whole && shift)
-      problems.emplace_back("a body that is renewed as a whole is not renewed for its shift: leave one of them out");
+    if (update != ReferenceUpdate::adaptive && (distortion || volume_change || shift))
+      problems.emplace_back("distortion, volume_change and shift say when `update: adaptive` renews: leave them out, or choose it");
+    if (distortion && volume_change)
+      problems.emplace_back("give one of distortion and volume_change");
   }
-  bool renews_in_parts() const noexcept { return update == ReferenceUpdate::adaptive && !whole; }
-  bool renews_whole() const noexcept { return update == ReferenceUpdate::adaptive && whole; }
+  bool is_renewed(bool due) const noexcept { return update == ReferenceUpdate::always || (update == ReferenceUpdate::adaptive && due); }
+  /// The largest distortion, or change of volume.
+  Real largest_strain() const noexcept { return volume_change ? *volume_change : distortion.value_or(default_distortion); }
 };
 
 /// Whether any body keeps a reference configuration.

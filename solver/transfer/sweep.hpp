@@ -288,8 +288,8 @@ class BlockSweep {
   {
     const std::size_t n = scratch_.runs.back().end;
     find_forces(m_, time, columns, n);
-    if (columns.G && at == DepositAt::step && is_renewed(strips_.body(key), columns))
-      renew(columns, n), ++strips_.strips(key)[to_size(number)].arrangement;
+    if (columns.G)
+      update_reference(key, strips_.strips(key)[to_size(number)], columns, at);
     find_shares(columns.places(), scratch_);
     if (columns.side)
       find_sides(columns, at);
@@ -305,17 +305,17 @@ class BlockSweep {
     through_.add(columns, n, block_);
     add_surface_loads(strips_.group(key), columns);
   }
-  /// Whether the particles of a strip take a new reference.
-  bool is_renewed(Index body, const StripColumns<D>& columns) const noexcept
+  /// Makes the present configuration the reference of a body that is renewed, and finds out whether it will be in the next step.
+  void update_reference(std::size_t key, Strip& strip, const StripColumns<D>& columns, DepositAt at)
   {
-    const ReferenceOptions& options = m_.problem.references[to_size(body)];
-    if (!options.renews_in_parts())
-      return options.update == ReferenceUpdate::always || m_.work.renewed[to_size(body)] != 0;
-    const Real strain = options.distortion.value_or(ReferenceOptions::default_distortion);
-    return std::ranges::any_of(scratch_.runs, [&](const CellRun<D>& run) {
-      const Real reach = options.shift.value_or(ReferenceOptions::default_shift) * run.frame->altitude;
-      return is_beyond(columns, run.begin, run.end, strain, reach);
-    });
+    const std::size_t body = to_size(strips_.body(key));
+    const ReferenceOptions& options = m_.problem.references[body];
+    if (at == DepositAt::step && m_.work.renewed[body] != 0)
+      renew(columns, to_size(strip.n)), ++strip.arrangement;
+    if (options.update == ReferenceUpdate::adaptive && m_.work.due[key] == 0)
+      m_.work.due[key] = std::ranges::any_of(scratch_.runs, [&](const CellRun<D>& run) {
+        return is_due(options, columns, run.begin, run.end, run.frame->altitude);
+      });
   }
   /// Finds the sides of sheets that particles are on, unless they are known, and lists the particles that change theirs as leavers.
   void find_sides(const StripColumns<D>& columns, DepositAt at)

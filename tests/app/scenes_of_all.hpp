@@ -228,6 +228,25 @@ inline std::vector<SceneCase> scenes_of_all()
           "  - {name: right, material: stuff, shape: {type: box, low: [1.334, 0], high: [2, 1]}, particles_per_cell: 3}\n",
       .outputs = ", bodies: [low, high]"};
   all.push_back({"two_materials", two_materials});
+  // Bodies that keep references, beside one that is renewed in each step; a body that never renews hangs alone.
+  const std::string moving_bodies =
+      "bodies:\n"
+      "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3, -1], f_bar: "
+      "true, reference: {update: adaptive}}\n"
+      "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [1, -4]}\n";
+  const std::string hanging_body =
+      "bodies: [{name: low, material: stuff, shape: {type: box, low: [0, 0.5], high: [2, 1.5]}, particles_per_cell: 3, velocity: [1, -1], "
+      "reference: ";
+  const std::string held = "boundaries: [{type: fixed, on: x_min}]\n";
+  for (const std::string kernel : {"", "kernel: linear\n", "kernel: umls\n", "kernel: umls\numls: {gradient: exact_force}\n"}) {
+    const std::string name = kernel.empty() ? "" : kernel.find("exact") != std::string::npos ? "_exact_force" : "_" + kernel.substr(8, 4);
+    all.push_back({"references" + name, {.more = kernel, .bodies = moving_bodies}});
+    all.push_back({"references_never" + name, {.more = kernel, .bodies = hanging_body + "{update: never}}]\n", .boundaries = held}});
+  }
+  all.push_back({"references_tpic", {.more = "transfer: {scheme: tpic}\n", .bodies = moving_bodies}});
+  all.push_back({"references_whole",
+                 {.bodies = hanging_body + "{update: adaptive, volume_change: 1.0e-3}}]\n", .boundaries = held}});
+
   SceneParts two_by_tpic = two_materials;
   two_by_tpic.more = "transfer: {scheme: tpic}\n";
   all.push_back({"two_materials_tpic", two_by_tpic});
