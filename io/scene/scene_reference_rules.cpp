@@ -27,7 +27,6 @@ class ReferenceRules : private SceneRuleBase {
     }
     return std::move(findings_);
   }
-
 };
 
 }  // namespace

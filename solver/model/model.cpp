@@ -202,8 +202,8 @@ void begin_sweeps(Model<D>& m)
   if (m.work.strips)
     return;
   m.work.strips.emplace();
-  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.transfer->keeps_gradients() || m.problem.columns.reference, m.state.bodies, m.state.materials,
-                      m.state.particles, m.work.order);
+  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.transfer->keeps_gradients() || m.problem.columns.reference,
+                      m.state.bodies, m.state.materials, m.state.particles, m.work.order);
   find_averaged_bodies(m);
   m.work.due.assign(m.problem.columns.reference ? m.work.strips->keys() : 0, 0);
   m.transfer->sum_strips(m);

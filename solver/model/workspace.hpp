@@ -27,7 +27,7 @@ struct Workspace {
   CellOrder order;
   std::vector<std::uint8_t> renewed;  ///< bodies that take a new reference at the end of this step
   std::vector<std::uint8_t> due;      ///< keys of strips with particles for which their body needs one
-  TrackedIds carriers;  ///< particles that carry tractions
+  TrackedIds carriers;                ///< particles that carry tractions
   Migration<D> migration;
   ParticleErrors errors;
 

@@ -28,8 +28,9 @@ struct ReferenceOptions {
   static constexpr auto fields()
   {
     return std::tuple{
-        optional_choice("update", &ReferenceOptions::update,
-                        "always: in each step (updated Lagrangian); adaptive: when the body has strained or moved; never: total Lagrangian"),
+        optional_choice(
+            "update", &ReferenceOptions::update,
+            "always: in each step (updated Lagrangian); adaptive: when the body has strained or moved; never: total Lagrangian"),
         optional("distortion", &ReferenceOptions::distortion, positive, "-",
                  "adaptive: largest strain since the last renewal, as an entry of (G^T G - I) / 2; default 0.05"),
         optional("volume_change", &ReferenceOptions::volume_change, positive, "-",

@@ -57,8 +57,8 @@ struct alignas(64) NodeSum {
 /// further sums for the operators.
 template <int D>
 struct ProjectedNodeSum : NodeSum<D> {
-  Mat<D> affine = Mat<D>::Zero();  ///< sum B m A [kg/s]
-  Real volume{};                   ///< sum B V [m^D], where surfaces are extended
+  Mat<D> affine = Mat<D>::Zero();   ///< sum B m A [kg/s]
+  Real volume{};                    ///< sum B V [m^D], where surfaces are extended
   Mat<D> tension = Mat<D>::Zero();  ///< sum B V sigma, of reference configurations sum B V sigma G^-T [N m]
   Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
   void clear_momentum() noexcept

@@ -17,11 +17,10 @@ namespace talus {
 // this is the updated Lagrangian form; never renewed, the total Lagrangian one.  A body is renewed in one piece: beside a part that has been
 // renewed and lies apart from its neighbours by a tenth of a cell, a disk loses its spin within twenty turns.
 
-/// The inverse of G of particles i to i + 3, one per lane.
+/// The inverses of four matrices, one per lane.
 template <int D>
-[[gnu::always_inline]] inline MatOf<D> inverse_of(const StripColumn<Mat<D>>& G, std::size_t i) noexcept
+[[gnu::always_inline]] inline MatOf<D> inverse_of(const MatOf<D>& A) noexcept
 {
-  const MatOf<D> A = G.load(i);
   MatOf<D> adjugate;
   if constexpr (D == 2) {
     adjugate(0, 0) = A(1, 1), adjugate(0, 1) = -A(0, 1), adjugate(1, 0) = -A(1, 0), adjugate(1, 1) = A(0, 0);
@@ -41,12 +40,25 @@ template <int D>
   return adjugate;
 }
 
+/// The affine field about the present positions of particles i to i + 3, which have moved for a time dt since C was found: C (I + dt C)^-1.  C
+/// itself is about the positions before; with it a disk of `projected` and `aflip` loses a third of its spin in twenty turns.  With references
+/// C is about them.
+template <int D>
+[[gnu::always_inline]] inline MatOf<D> affine_field(const StripColumns<D>& columns, std::size_t i, Real dt) noexcept
+{
+  const MatOf<D> C = columns.affine_field().load(i);
+  if (columns.G)
+    return C;
+  const MatOf<D> moved = MatOf<D>::Identity() + SimdReal(dt) * C;
+  return C.lazyProduct(inverse_of<D>(moved));
+}
+
 /// V sigma G^-T of particles i to i + 3 [N m].
 template <int D>
 [[gnu::always_inline]] inline MatOf<D> pulled_back_tension(const StripColumns<D>& columns, std::size_t i) noexcept
 {
   const MatOf<D> tension = columns.volume.load(i) * unpack(columns.stress.load(i)).template topLeftCorner<D, D>();
-  return tension.lazyProduct(inverse_of<D>(columns.G, i).transpose());
+  return tension.lazyProduct(inverse_of<D>(columns.G.load(i)).transpose());
 }
 
 /// Multiplies V sigma of particle p by G^-T, if there are references.
@@ -72,7 +84,7 @@ void follow_motion(const StripColumns<D>& columns, std::size_t n, Real dt) noexc
   columns.G.pad(n), columns.L.pad(n);
   for (std::size_t i = 0; i < n; i += pack_size) {
     const MatOf<D> H = columns.L.load(i), G = columns.G.load(i);
-    columns.L.store(i, H.lazyProduct(inverse_of<D>(columns.G, i)));
+    columns.L.store(i, H.lazyProduct(inverse_of<D>(columns.G.load(i))));
     columns.G.store(i, G + SimdReal(dt) * H);
   }
 }
@@ -121,7 +133,7 @@ template <int D>
 void shorten(const StripColumns<D>& columns, std::size_t n, Real* altitude) noexcept
 {
   for (std::size_t i = 0; i < n; i += pack_size) {
-    const MatOf<D> inverse = inverse_of<D>(columns.G, i);
+    const MatOf<D> inverse = inverse_of<D>(columns.G.load(i));
     const MatOf<D> B = inverse.transpose().lazyProduct(inverse);
     SimdReal most(0.0);
     for (int r = 0; r < D; ++r) {

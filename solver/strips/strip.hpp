@@ -25,7 +25,8 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, side, reference, since_reference;
+  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, side, reference,
+      since_reference;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place.

@@ -12,8 +12,7 @@ namespace talus {
 template <int D, bool affine, bool loaded, bool moments, bool pulled>
 struct Contribution {
   static constexpr int field = D, mass = field + (affine ? D * D : 0), tension = mass + 1,
-                       load = tension + (pulled ? D * D : Symmetric<D>::size),
-                       momentum = load + (loaded ? D : 0), products = momentum + D,
+                       load = tension + (pulled ? D * D : Symmetric<D>::size), momentum = load + (loaded ? D : 0), products = momentum + D,
                        size = moments ? products + CellMoments<D>::products : momentum, padded_size = padded(size);
   /// The tension among the numbers of a particle, or of a sum.
   static Mat<D> tension_in(const Real* numbers) noexcept

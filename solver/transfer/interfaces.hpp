@@ -18,7 +18,7 @@ namespace talus {
 /// Sums over the particles of a group in a cell, for each of its vertices a.
 template <int D>
 struct CellGroupSum {
-  std::array<Real, D + 1> volume{};            ///< sum B_a V [m^D]
+  std::array<Real, D + 1> volume{};             ///< sum B_a V [m^D]
   std::array<Mat<D>, D + 1> tension = zeros();  ///< sum B_a V sigma, see ProjectedNodeSum [N m]
   bool is_seen() const noexcept
   {
@@ -194,9 +194,9 @@ class Interfaces {
   std::vector<SparseRows<CellGroupSum<D>>> cells_;  ///< by group and cell
   std::vector<Index> mixed_, place_;                ///< mixed nodes, ascending; of each node where it is among them, or `none`
   std::vector<std::size_t> first_row_;
-  std::vector<Vec<D>> rows_;           ///< of each mixed node, by group
-  std::vector<Mat<D>> tension_;  ///< of each mixed node, by group
-  std::vector<Mat<D>> gradient_;       ///< of each mixed node, by group
+  std::vector<Vec<D>> rows_;      ///< of each mixed node, by group
+  std::vector<Mat<D>> tension_;   ///< of each mixed node, by group
+  std::vector<Mat<D>> gradient_;  ///< of each mixed node, by group
 };
 
 }  // namespace talus

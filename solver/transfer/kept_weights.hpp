@@ -78,8 +78,7 @@ class KeptWeights {
       const Lane& of = lanes_[at_.lane++];
       weights.padded_size[lane] = of.size;
       for (int d = 0; d < D; ++d)
-        weights.y[lane][d] =
-            reinterpret_cast<const Real*>(reinterpret_cast<const char*>(&cell) + of.y[static_cast<std::size_t>(d)]);
+        weights.y[lane][d] = reinterpret_cast<const Real*>(reinterpret_cast<const char*>(&cell) + of.y[static_cast<std::size_t>(d)]);
       const auto take_nodes = [&](Real* to) { std::copy_n(next, of.size, to), next += of.size; };
       take_nodes(weights.s[lane]);
       if (slopes != nullptr)

@@ -41,7 +41,7 @@ struct KernelRows {
   Interfaces<D> interfaces;
   Extension<D> extension;
   std::vector<KeptWeights<D, K::max_nodes>> kept;  ///< of each strip of a key, where bodies have references and weights are not cheap
-  SparseRows<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
+  SparseRows<Mat<D>> gradient_of_remapped;         ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
 
   KernelRows(const Mesh<D>& mesh, const K& of_kernel, std::size_t number)
       : kernel(of_kernel),

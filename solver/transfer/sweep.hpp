@@ -31,7 +31,13 @@ class BlockSweep {
 
   /// `fields`: the rows of all velocity fields.
   BlockSweep(Model<D>& m, std::span<KernelRows<D, K>> fields, Index block)
-      : m_(m), fields_(fields), block_(block), strips_(*m.work.strips), scratch_(scratch_of_thread()), through_(m, scratch_)
+      : m_(m),
+        fields_(fields),
+        block_(block),
+        strips_(*m.work.strips),
+        scratch_(scratch_of_thread()),
+        through_(m, scratch_),
+        moved_for_(m.state.clock.dt)
   {}
 
   /// Sums the particles as they are, before the first step after they came into strips.
@@ -47,6 +53,7 @@ class BlockSweep {
   /// From nodes to particles and, for the next step, back.
   void advance(const SweepParts& parts, Real dt, Real pic)
   {
+    moved_for_ = dt;
     if (parts.deposits)
       clear_sums(!parts.orders);
     for_each_strip(parts, [&](std::size_t key, Index number, StripColumns<D>& columns) {
@@ -180,7 +187,7 @@ class BlockSweep {
       add_run(arriving[begin].cell, begin, i);
     }
     find_shares(columns.places(), scratch_);
-    through_.add(columns, arriving.size(), block_);
+    through_.add(columns, arriving.size(), moved_for_, block_);
     add_surface_loads(group, columns);
   }
 
@@ -302,7 +309,7 @@ class BlockSweep {
       for (Real* const share : scratch_.share)
         share[i] = 0;
     }
-    through_.add(columns, n, block_);
+    through_.add(columns, n, moved_for_, block_);
     add_surface_loads(strips_.group(key), columns);
   }
   /// Makes the present configuration the reference of a body that is renewed, and finds out whether it will be in the next step.
@@ -313,9 +320,8 @@ class BlockSweep {
     if (at == DepositAt::step && m_.work.renewed[body] != 0)
       renew(columns, to_size(strip.n)), ++strip.arrangement;
     if (options.update == ReferenceUpdate::adaptive && m_.work.due[key] == 0)
-      m_.work.due[key] = std::ranges::any_of(scratch_.runs, [&](const CellRun<D>& run) {
-        return is_due(options, columns, run.begin, run.end, run.frame->altitude);
-      });
+      m_.work.due[key] = std::ranges::any_of(
+          scratch_.runs, [&](const CellRun<D>& run) { return is_due(options, columns, run.begin, run.end, run.frame->altitude); });
   }
   /// Finds the sides of sheets that particles are on, unless they are known, and lists the particles that change theirs as leavers.
   void find_sides(const StripColumns<D>& columns, DepositAt at)
@@ -378,6 +384,7 @@ class BlockSweep {
   ParticleStrips<D>& strips_;
   StripScratch<D>& scratch_;
   Through through_;
+  Real moved_for_;  ///< length of the step that brought the particles where they are [s]
 };
 
 }  // namespace talus

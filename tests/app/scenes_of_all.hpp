@@ -233,7 +233,8 @@ inline std::vector<SceneCase> scenes_of_all()
       "bodies:\n"
       "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3, -1], f_bar: "
       "true, reference: {update: adaptive}}\n"
-      "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [1, -4]}\n";
+      "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [1, "
+      "-4]}\n";
   const std::string hanging_body =
       "bodies: [{name: low, material: stuff, shape: {type: box, low: [0, 0.5], high: [2, 1.5]}, particles_per_cell: 3, velocity: [1, -1], "
       "reference: ";
@@ -244,8 +245,7 @@ inline std::vector<SceneCase> scenes_of_all()
     all.push_back({"references_never" + name, {.more = kernel, .bodies = hanging_body + "{update: never}}]\n", .boundaries = held}});
   }
   all.push_back({"references_tpic", {.more = "transfer: {scheme: tpic}\n", .bodies = moving_bodies}});
-  all.push_back({"references_whole",
-                 {.bodies = hanging_body + "{update: adaptive, volume_change: 1.0e-3}}]\n", .boundaries = held}});
+  all.push_back({"references_whole", {.bodies = hanging_body + "{update: adaptive, volume_change: 1.0e-3}}]\n", .boundaries = held}});
 
   SceneParts two_by_tpic = two_materials;
   two_by_tpic.more = "transfer: {scheme: tpic}\n";
