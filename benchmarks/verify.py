@@ -53,6 +53,7 @@ CASES = [
     "cook_membrane",
     "plate_with_hole",
     "elastica",
+    "pulled_bar",
     "hertz_contact",
     "sphere_container",
     "infinite_slope",

@@ -191,6 +191,9 @@ def tradeoff(lab):
         axes={"mesh": {f"cells of {size} m": {"mesh.size": size} for size in SWEPT[lab.level]},
               "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (4, 3, 6)},
               "method": tools.METHODS,
+              "reference": {"renewed in each step": {}, **{f"reference kept to a strain of {strain}": {
+                  "bodies[0].reference": {"update": "adaptive", "distortion": strain}} for strain in (0.01, 0.05, 0.2)},
+                  "reference never renewed": {"bodies[0].reference": {"update": "never"}}},
               "step": {f"CFL {share}": {"time.cfl": share} for share in (0.4, 0.8)}},
         error=lambda run: history_error(run.history, curve, data),
         what="rms error of the tip of the cantilever over 4 s")

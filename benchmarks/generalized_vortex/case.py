@@ -9,6 +9,12 @@ FEW = {"quick": [0.14, 0.1], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # of the s
 COARSE = {"quick": [0.2, 0.14], "full": [0.14, 0.1, 0.07]}  # of linear at the large one, which does not converge
 MARKS = {"umls": "o-", "linear": "s--", "projected": "^-"}
 FEWEST, MANY = 4, 12  # particles per cell: those of the comparison, and as many as it takes when they are drawn apart by several cells
+KEPT = {"quick": [0.1, 0.07, 0.05], "full": [0.1, 0.07, 0.05, 0.035]}  # m, of bodies that keep their first reference
+CRITERIA = {  # of renewals, from none kept to all
+    "always": {"update": "always"}, "|J - 1| > 0.01": {"update": "adaptive", "volume_change": 0.01}, "strain > 0.05": {"update": "adaptive"},
+    "strain > 0.5": {"update": "adaptive", "distortion": 0.5}, "strain > 5": {"update": "adaptive", "distortion": 5},
+    "|J - 1| > 0.5": {"update": "adaptive", "volume_change": 0.5}, "never": {"update": "never"}}
+AT = 0.07  # m, at which they are compared
 TURNS = [1, 0.1]  # rad, largest rotation: that of the literature, and one in which hardly any particle leaves its cell
 
 
@@ -51,12 +57,39 @@ def errors_over_time(run, turn, data):
     return times, found
 
 
-def start(lab, kernel, turn, size, data, count=FEWEST):
-    """Starts one run with `count` particles per cell."""
+def start(lab, kernel, turn, size, data, count=FEWEST, criterion=None):
+    """Starts one run with `count` particles per cell, and references that are renewed by one of CRITERIA."""
     velocity, force = formulas(turn, data)
-    return lab.run(f"{CASE}/scene.yaml", f"{kernel}_{turn}_dx{size}_{count}", {
-        "mesh.size": size, "bodies[0].particles_per_cell": count, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel], "bodies[0].velocity": velocity,
+    kept = {"bodies[0].reference": CRITERIA[criterion]} if criterion else {}
+    return lab.run(f"{CASE}/scene.yaml", f"{kernel}_{turn}_dx{size}_{count}{'_reference' + str(list(CRITERIA).index(criterion)) if criterion else ''}", {
+        **kept, "mesh.size": size, "bodies[0].particles_per_cell": count, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel], "bodies[0].velocity": velocity,
         "loads[0].acceleration": force})
+
+
+def judge_references(lab, data):
+    """Results of few particles per cell that keep references, and a figure of error and time over the criterion."""
+    source = data["source"]
+    runs = {size: start(lab, "projected", 1, size, data, FEWEST, "never") for size in KEPT[lab.level]}
+    by = {criterion: start(lab, "projected", 1, AT, data, FEWEST, criterion) for criterion in CRITERIA}
+    errors = [max(errors_over_time(run, 1, data)[1]) for run in runs.values()]
+    lab.convergence(CASE, "displacement error, projected, 1 rad, reference never renewed", list(runs), errors, expected=2)
+    found = {criterion: (max(errors_over_time(run, 1, data)[1]), run.seconds) for criterion, run in by.items()}
+
+    def draw_criteria(figure):
+        left, right = figure.subplots(1, 2, sharey=True)
+        for axes, which, label in ((left, 0, "error in displacement [%]"), (right, 1, "processor time [s]")):
+            axes.barh(list(found), [value[which] * (1 if which else 100) for value in found.values()])
+            axes.set_xlabel(label)
+        left.invert_yaxis()
+
+    lab.figure(CASE, "verification_vortex_references", draw_criteria, size=(7.4, 2.8),
+               caption=f"Generalized vortex, projected, four particles per cell of {AT} m: error and time by the criterion of renewal.")
+    return [tools.Result(CASE, "order of convergence, projected, 1 rad, reference never renewed", "-", tools.observed_order(list(runs), errors), "at least",
+                         data["order asked"], 2.0, source, list(runs.values())[-1]),
+            *(tools.Result(CASE, f"displacement error, projected, 1 rad, reference never renewed, cells of {size} m", "-", error, "reported", None, 0.0, source, run)
+              for (size, run), error in zip(runs.items(), errors)),
+            *(tools.Result(CASE, f"displacement error, projected, 1 rad, cells of {AT} m, renewed where {criterion}", "-", found[criterion][0], "reported", None, 0.0,
+                           source, run) for criterion, run in by.items())]
 
 
 def draw(figure, curves, run, data):
@@ -98,4 +131,4 @@ def evaluate(lab):
         lab.convergence(CASE, f"displacement error, {name}", list(runs), errors, expected=2)
     lab.figure(CASE, "verification_vortex", lambda figure: draw(figure, curves, list(plan["projected", 1, MANY].values())[-1], data), size=(7.4, 3.2),
                caption="Generalized vortex: error of the displacement, and a sector of the ring at the largest rotation.")
-    return results
+    return results + judge_references(lab, data)

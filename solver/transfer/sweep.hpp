@@ -37,7 +37,7 @@ class BlockSweep {
         strips_(*m.work.strips),
         scratch_(scratch_of_thread()),
         through_(m, scratch_),
-        moved_for_(m.state.clock.dt)
+        moved_for_(carries_affine_field() ? m.state.clock.dt : 0)
   {}
 
   /// Sums the particles as they are, before the first step after they came into strips.
@@ -53,7 +53,7 @@ class BlockSweep {
   /// From nodes to particles and, for the next step, back.
   void advance(const SweepParts& parts, Real dt, Real pic)
   {
-    moved_for_ = dt;
+    moved_for_ = carries_affine_field() ? dt : 0;
     if (parts.deposits)
       clear_sums(!parts.orders);
     for_each_strip(parts, [&](std::size_t key, Index number, StripColumns<D>& columns) {
@@ -97,6 +97,8 @@ class BlockSweep {
   }
 
  private:
+  /// The matrix of APIC goes back as it is [Jiang et al. 2015].
+  bool carries_affine_field() const noexcept { return m_.problem.transfer.scheme != Scheme::apic; }
   static StripScratch<D>& scratch_of_thread()
   {
     static thread_local StripScratch<D> scratch;
@@ -384,7 +386,7 @@ class BlockSweep {
   ParticleStrips<D>& strips_;
   StripScratch<D>& scratch_;
   Through through_;
-  Real moved_for_;  ///< length of the step that brought the particles where they are [s]
+  Real moved_for_;  ///< length of the step with which affine fields are carried to where the particles are [s]
 };
 
 }  // namespace talus

@@ -19,7 +19,7 @@ Symmetric<D> of(const Mat<D>& full)
 }
 
 template <int D>
-void expect_as_eigen(const Mat<D>& full, const Vec<D>& x)
+void expect_as_eigen(const Mat<D>& full)
 {
   const Symmetric<D> packed = of<D>(full), adjoint = adjugate(packed);
   const Mat<D> expected = full.determinant() * full.inverse();
@@ -29,7 +29,6 @@ void expect_as_eigen(const Mat<D>& full, const Vec<D>& x)
       EXPECT_EQ(packed(i, j), full(i, j)) << i << " " << j;
       EXPECT_NEAR(adjoint(i, j), expected(i, j), 1e-12) << i << " " << j;
     }
-  EXPECT_LT((packed * x - full * x).norm(), 1e-13);
   EXPECT_NEAR(determinant(packed, adjoint), full.determinant(), 1e-12);
   EXPECT_NEAR(round_determinant(packed), std::pow(full.trace() / D, D), 1e-12);
 }
@@ -38,10 +37,10 @@ TEST(Symmetric, IsWhatEigenSaysOfTheFullMatrix)
 {
   Mat<2> plane;
   plane << 2, 0.5, 0.5, 3;
-  expect_as_eigen<2>(plane, {0.75, -1.5});
+  expect_as_eigen<2>(plane);
   Mat<3> space;
   space << 2, 0.5, -0.25, 0.5, 3, 0.75, -0.25, 0.75, 5;
-  expect_as_eigen<3>(space, {0.75, -1.5, 2.5});
+  expect_as_eigen<3>(space);
 }
 
 }  // namespace

@@ -73,12 +73,11 @@ TEST(NodeRows, OfHatsHaveMomentumIfTheyHaveAnAffineField)
   EXPECT_EQ(shape_value.momentum, Vec<2>(10, 12));
   EXPECT_EQ(shape_value.affine, 2 * other.affine);
   EXPECT_EQ(shape_value.momentum_about({1, -1}), Vec<2>(10 - 2, 12 - 2));
-  other.tension.entry[0] = 7, other.tension.entry[2] = 8;
+  other.tension << 7, 8, 9, 10;
   shape_value += other;
   shape_value += other;
   EXPECT_EQ(shape_value.affine, 4 * other.affine);
-  EXPECT_EQ(shape_value.tension.entry[0], 14);
-  EXPECT_EQ(shape_value.tension.entry[2], 16);
+  EXPECT_EQ(shape_value.tension, 2 * other.tension);
   shape_value.clear_momentum();
   EXPECT_FALSE(shape_value.has_momentum());
 }
