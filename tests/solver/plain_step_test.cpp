@@ -101,7 +101,8 @@ TYPED_TEST(PlainFormulas, GiveTheMassMomentumAndForceOfNodes)
         const Real m_p = m.state.particles.mass[p];
         const Mat<D> sigma = unpack(m.state.particles.stress[p]).template topLeftCorner<D, D>();
         mass[v][0] += w * m_p;
-        const Mat<D> L = m.state.particles.L[p], affine = L * (Mat<D>::Identity() + m.state.clock.dt * L).inverse();
+        const Mat<D> L = m.state.particles.L[p], W = (L - L.transpose()) / 2,
+                     affine = L * (Mat<D>::Identity() + m.state.clock.dt * W).inverse();
         momentum[v] += w * m_p * (m.state.particles.v[p] + affine * (m.problem.mesh.node(static_cast<Index>(v)) - read_at));
         force[v] -= m.state.particles.volume[p] * sigma * G;
       });
