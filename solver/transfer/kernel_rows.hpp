@@ -55,12 +55,21 @@ struct KernelRows {
     }
   }
 
+  /// Makes room for the weights of so many strips, unless they are cheap.
+  void keep_weights(std::size_t strips)
+  {
+    if constexpr (!WeighsVertices<K, D>)
+      kept.assign(strips, {});
+  }
   /// The memory [B], without that of the halo, where these shares of the nodes are in use and of the blocks hold particles.
   std::int64_t bytes(Real of_nodes, Real of_blocks) const
   {
     const Real in_use = of_nodes * static_cast<Real>(bytes_of_all(gradient_of_remapped, projected.sum, projected.motion)) +
                         of_blocks * static_cast<Real>(bytes_of_all(moments, blocks.row) + interfaces.bytes_of_cells());
-    return static_cast<std::int64_t>(in_use) +
+    std::size_t weights = 0;
+    for (const auto& of_strip : kept)
+      weights += of_strip.bytes();
+    return static_cast<std::int64_t>(in_use) + static_cast<std::int64_t>(weights) +
            static_cast<std::int64_t>(bytes_of_all(blocks.slot) + interfaces.bytes_of_nodes() + extension.bytes() + surfaces.bytes());
   }
 };

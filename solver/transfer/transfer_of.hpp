@@ -51,12 +51,10 @@ class TransferOf final : public Transfer<D> {
   }
 
   bool keeps_gradients() const override { return Sweep::keeps_gradients; }
-
   void sum_strips(Model<D>& m) override
   {
     for (Rows& of : fields_) {
-      if constexpr (!WeighsVertices<K, D>)
-        of.kept.assign(m.problem.columns.reference ? m.work.strips->keys() * to_size(strips_in_block) : 0, {});
+      of.keep_weights(m.problem.columns.reference ? m.work.strips->keys() * to_size(strips_in_block) : 0);
       const auto is_of_field = [&](Index body) { return m.problem.contacts.field_of(body) == of.field % m.problem.fields_in_front(); };
       if (WeighsVertices<K, D> && m.problem.transfer.uses_musl()) {
         of.gradient_of_remapped.resize(of.projected.motion.size());
