@@ -40,20 +40,6 @@ template <int D>
   return adjugate;
 }
 
-/// The affine field about the present positions of particles i to i + 3, which have moved for a time dt since C was found: C (I + dt W)^-1 with
-/// the spin W = (C - C^T) / 2.  C itself is about the positions before; with it a disk of `projected` and `aflip` loses a third of its spin in
-/// twenty turns.  All of C instead of W would carry linear fields along exactly, and grow without bound where noise compresses.  With references
-/// C is about them.
-template <int D>
-[[gnu::always_inline]] inline MatOf<D> affine_field(const StripColumns<D>& columns, std::size_t i, Real dt) noexcept
-{
-  const MatOf<D> C = columns.affine_field().load(i);
-  if (columns.G)
-    return C;
-  const MatOf<D> turned = MatOf<D>::Identity() + SimdReal(dt / 2) * (C - C.transpose());
-  return C.lazyProduct(inverse_of<D>(turned));
-}
-
 /// V sigma G^-T of particles i to i + 3 [N m].
 template <int D>
 [[gnu::always_inline]] inline MatOf<D> pulled_back_tension(const StripColumns<D>& columns, std::size_t i) noexcept

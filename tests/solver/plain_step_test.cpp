@@ -88,7 +88,6 @@ TYPED_TEST(PlainFormulas, GiveTheMassMomentumAndForceOfNodes)
 {
   constexpr int D = TypeParam::D;
   auto m = any_ball<TypeParam>();
-  m.state.clock.dt = 0.1;  // L is that of the motion that has brought the particles where they are
   sum_on_nodes(m);
   using Mass = Eigen::Matrix<Real, 1, 1>;
   const std::size_t n = m.work.fields[0].nodes.sum.size();
@@ -101,9 +100,7 @@ TYPED_TEST(PlainFormulas, GiveTheMassMomentumAndForceOfNodes)
         const Real m_p = m.state.particles.mass[p];
         const Mat<D> sigma = unpack(m.state.particles.stress[p]).template topLeftCorner<D, D>();
         mass[v][0] += w * m_p;
-        const Mat<D> L = m.state.particles.L[p], W = (L - L.transpose()) / 2,
-                     affine = L * (Mat<D>::Identity() + m.state.clock.dt * W).inverse();
-        momentum[v] += w * m_p * (m.state.particles.v[p] + affine * (m.problem.mesh.node(static_cast<Index>(v)) - read_at));
+        momentum[v] += w * m_p * (m.state.particles.v[p] + m.state.particles.L[p] * (m.problem.mesh.node(static_cast<Index>(v)) - read_at));
         force[v] -= m.state.particles.volume[p] * sigma * G;
       });
   for (std::size_t v = 0; v < n; ++v) {
