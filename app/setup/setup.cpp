@@ -9,6 +9,7 @@
 #include "app/setup/boundaries_of_scene.hpp"
 #include "app/setup/contacts_of_scene.hpp"
 #include "app/setup/loads_of_scene.hpp"
+#include "app/setup/references_of_scene.hpp"
 #include "app/setup/rigid_of_scene.hpp"
 #include "app/setup/seed.hpp"
 #include "app/setup/stages_of_scene.hpp"
@@ -16,7 +17,6 @@
 #include "app/setup/water_table.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
-#include "io/scene/scene_rules.hpp"
 #include "io/system/process.hpp"
 #include "mesh/digest.hpp"
 
@@ -218,18 +218,6 @@ void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravit
       }
 }
 
-/// The reference configuration of each body.  The shift does not count for bodies that can touch nothing.
-std::vector<ReferenceOptions> references_of(const Scene& scene)
-{
-  std::vector<ReferenceOptions> all;
-  for (const BodySpec& body : scene.bodies) {
-    ReferenceOptions& options = all.emplace_back(body.reference.value_or(ReferenceOptions()));
-    if (!options.shift && !contacts_of_body(scene, body).empty())
-      options.shift = ReferenceOptions::default_shift;
-  }
-  return all;
-}
-
 /// Where surfaces are extended, what lies beside them does not rest under its weight.
 void warn_of_creeping_surfaces(const Scene& scene, const std::vector<Stage>& stages, std::vector<std::string>& warnings)
 {
@@ -268,9 +256,12 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   for (const ContactLaw& law : setup.conditions.contacts.laws)
     setup.notes.push_back(describe(law));
   setup.conditions.cuts = cuts_of(scene);
-  setup.conditions.references = references_of(scene);
   for (const CutLaw& law : setup.conditions.cuts)
     setup.notes.push_back(describe(law));
+  setup.conditions.references = references_of(scene);
+  for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+    if (const ReferenceOptions& reference = setup.conditions.references[body]; reference.update != ReferenceUpdate::always)
+      setup.notes.push_back(describe(scene.bodies[body].name, reference));
   add_rigid_bodies(scene, mesh, ranks, errors, setup);
   warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, setup.conditions.contacts, ranks,
                       setup.warnings);

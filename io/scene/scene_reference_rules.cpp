@@ -18,14 +18,27 @@ class ReferenceRules : private SceneRuleBase {
       const std::string path = fmt::format("bodies[{}].reference", i);
       if (const auto sheet = std::ranges::find_if(scene_.rigid, &RigidSpec::is_sheet); sheet != scene_.rigid.end())
         add(path, fmt::format("the sides of the sheet \"{}\" are those of present positions: leave this out", sheet->name));
-      if (const auto material = std::ranges::find(scene_.materials, body.material, &MaterialSpec::name);
-          material != scene_.materials.end() && material->law.model()->heat())
+      if (conducts(body))
         add(path, "heat is conducted between present positions: leave this out, or the conductivity");
       if (body.reference->update == ReferenceUpdate::never)
         for (const std::string& contact : contacts_of_body(scene_, body))
           add(path + ".update", fmt::format("{}; only `adaptive` knows where the body is", contact));
     }
     return std::move(findings_);
+  }
+
+ private:
+  /// Whether a body has a material that conducts heat, at the start or from a stage on.
+  bool conducts(const BodySpec& body) const
+  {
+    const auto does = [&](const std::string& name) {
+      const auto material = std::ranges::find(scene_.materials, name, &MaterialSpec::name);
+      return material != scene_.materials.end() && material->law.model()->heat();
+    };
+    return does(body.material) || std::ranges::any_of(scene_.stages, [&](const StageSpec& stage) {
+             return std::ranges::any_of(changes_of(stage).change,
+                                        [&](const NewMaterialSpec& change) { return change.body == body.name && does(change.material); });
+           });
   }
 };
 

@@ -17,35 +17,13 @@ namespace talus {
 // this is the updated Lagrangian form; never renewed, the total Lagrangian one.  A body is renewed in one piece: beside a part that has been
 // renewed and lies apart from its neighbours by a tenth of a cell, a disk loses its spin within twenty turns.
 
-/// The inverses of four matrices, one per lane.
-template <int D>
-[[gnu::always_inline]] inline MatOf<D> inverse_of(const MatOf<D>& A) noexcept
-{
-  MatOf<D> adjugate;
-  if constexpr (D == 2) {
-    adjugate(0, 0) = A(1, 1), adjugate(0, 1) = -A(0, 1), adjugate(1, 0) = -A(1, 0), adjugate(1, 1) = A(0, 0);
-  } else {
-    for (int r = 0; r < D; ++r)
-      for (int c = 0; c < D; ++c) {
-        const int r1 = (r + 1) % D, r2 = (r + 2) % D, c1 = (c + 1) % D, c2 = (c + 2) % D;
-        adjugate(c, r) = A(r1, c1) * A(r2, c2) - A(r1, c2) * A(r2, c1);
-      }
-  }
-  SimdReal det = A(0, 0) * adjugate(0, 0);
-  for (int k = 1; k < D; ++k)
-    det += A(0, k) * adjugate(k, 0);
-  const SimdReal per_det = SimdReal(1.0) / det;
-  for (int k = 0; k < D * D; ++k)
-    adjugate(k) *= per_det;
-  return adjugate;
-}
-
 /// V sigma G^-T of particles i to i + 3 [N m].
 template <int D>
 [[gnu::always_inline]] inline MatOf<D> pulled_back_tension(const StripColumns<D>& columns, std::size_t i) noexcept
 {
   const MatOf<D> tension = columns.volume.load(i) * unpack(columns.stress.load(i)).template topLeftCorner<D, D>();
-  return tension.lazyProduct(inverse_of<D>(columns.G.load(i)).transpose());
+  const MatOf<D> inverse = columns.G.load(i).inverse();
+  return tension.lazyProduct(inverse.transpose());
 }
 
 /// Multiplies V sigma of particle p by G^-T, if there are references.
@@ -70,8 +48,8 @@ void follow_motion(const StripColumns<D>& columns, std::size_t n, Real dt) noexc
 {
   columns.G.pad(n), columns.L.pad(n);
   for (std::size_t i = 0; i < n; i += pack_size) {
-    const MatOf<D> H = columns.L.load(i), G = columns.G.load(i);
-    columns.L.store(i, H.lazyProduct(inverse_of<D>(columns.G.load(i))));
+    const MatOf<D> H = columns.L.load(i), G = columns.G.load(i), inverse = G.inverse();
+    columns.L.store(i, H.lazyProduct(inverse));
     columns.G.store(i, G + SimdReal(dt) * H);
   }
 }
@@ -81,11 +59,10 @@ template <int D>
 [[gnu::always_inline]] inline SimdReal distortion(const StripColumns<D>& columns, std::size_t i) noexcept
 {
   const MatOf<D> G = columns.G.load(i);
-  const MatOf<D> C = G.transpose().lazyProduct(G);
-  SimdReal most = abs(C(0, 0) - SimdReal(1.0));
-  for (int r = 0; r < D; ++r)
-    for (int c = r; c < D; ++c)
-      most = max(most, abs(r == c ? C(r, c) - SimdReal(1.0) : C(r, c)));
+  const MatOf<D> twice_strain = MatOf<D>(G.transpose().lazyProduct(G)) - MatOf<D>::Identity();
+  SimdReal most(0.0);
+  for (int k = 0; k < D * D; ++k)
+    most = max(most, abs(twice_strain(k)));
   return SimdReal(0.5) * most;
 }
 
@@ -120,7 +97,7 @@ template <int D>
 void shorten(const StripColumns<D>& columns, std::size_t n, Real* altitude) noexcept
 {
   for (std::size_t i = 0; i < n; i += pack_size) {
-    const MatOf<D> inverse = inverse_of<D>(columns.G.load(i));
+    const MatOf<D> inverse = columns.G.load(i).inverse();
     const MatOf<D> B = inverse.transpose().lazyProduct(inverse);
     SimdReal most(0.0);
     for (int r = 0; r < D; ++r) {

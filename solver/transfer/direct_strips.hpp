@@ -108,8 +108,7 @@ TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const
 /// Adds the virtual stress of a load to the rows of a block, through the weights of the particles of all runs that stay.
 template <int D, Kernel<D> K>
 TALUS_ONE_COPY void add_virtual_stress(const K& kernel, const Mesh<D>& mesh, const SurfaceLoad<D>& load, const StripColumns<D>& columns,
-                                       StripScratch<D>& scratch, Index block, BlockRows<D, SurfaceSum<D>>& blocks,
-                                       DirectCell<D, K>& at) noexcept
+                                       StripScratch<D>& scratch, Index block, BlockRows<D, SurfaceSum<D>>& blocks, DirectCell<D, K>& at)
 {
   const std::span<SurfaceSum<D>> rows = blocks.rows(block);
   for (const CellRun<D>& run : scratch.runs) {
@@ -162,7 +161,7 @@ class DirectStrips {
   static void clear(KernelRows<D, K>&, const Model<D>&, Index) noexcept {}
   void find_gradients(const StripColumn<Vec<D>>&, bool, StripColumns<D>&) const noexcept {}
 
-  void move(StripColumns<D>& columns, bool, Real dt, Real pic) noexcept
+  void move(StripColumns<D>& columns, bool, Real dt, Real pic)
   {
     in_pass(columns, [&] {
       if (m_.problem.transfer.uses_musl())
@@ -182,7 +181,7 @@ class DirectStrips {
     in_pass(columns, [&] { add_virtual_stress(of_->kernel, m_.problem.mesh, load, columns, scratch_, block, blocks, at_); });
   }
   /// MUSL: new velocities and the affine field; adds their momentum to the rows of the block with the same weights.
-  void return_momentum(StripColumns<D>& columns, Real pic, Index block) noexcept
+  void return_momentum(StripColumns<D>& columns, Real pic, Index block)
   {
     in_pass(columns, [&] {
       if (!m_.problem.transfer.affine())
@@ -213,7 +212,7 @@ class DirectStrips {
     in_pass(columns, [&] { deposit_directly<affine, loaded>(of_->kernel, m_.problem.mesh, columns, scratch_, block, of_->blocks, at_); });
   }
   /// Opens the cell of a run with the motion of its nodes, and calls f(i, count) for its packs, with their weights.
-  void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const SparseRows<NodeMotion<D>>& motion, auto&& f) noexcept
+  void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const SparseRows<NodeMotion<D>>& motion, auto&& f)
   {
     of_->kernel.open(m_.problem.mesh, run.frame->cell, at_.cell);
     at_.begin_run(run, scratch_.runs);
@@ -231,7 +230,7 @@ class DirectStrips {
   }
 
   template <bool increments>
-  void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
+  void move(const StripColumns<D>& columns, Real dt, Real pic)
   {
     for (const CellRun<D>& run : scratch_.runs)
       for_each_pack(run, columns.places(), nodes_of(m_, *of_).motion, [&](std::size_t i, int count) {
@@ -245,7 +244,7 @@ class DirectStrips {
       });
   }
   /// MUSL: L from the remapped velocities, while the particles move with the velocities of the step, which stand in `change`.
-  void move_with_remapped_gradient(const StripColumns<D>& columns, Real dt) noexcept
+  void move_with_remapped_gradient(const StripColumns<D>& columns, Real dt)
   {
     for (const CellRun<D>& run : scratch_.runs)
       for_each_pack(run, columns.places(), nodes_of(m_, *of_).remapped, [&](std::size_t i, int count) {
@@ -255,7 +254,7 @@ class DirectStrips {
       });
   }
   template <bool increments, bool affine>
-  void return_momentum(const StripColumns<D>& columns, Real pic, Index block) noexcept
+  void return_momentum(const StripColumns<D>& columns, Real pic, Index block)
   {
     for (const CellRun<D>& run : scratch_.runs) {
       at_.sums.clear(K::max_nodes);

@@ -239,13 +239,15 @@ inline std::vector<SceneCase> scenes_of_all()
       "bodies: [{name: low, material: stuff, shape: {type: box, low: [0, 0.5], high: [2, 1.5]}, particles_per_cell: 3, velocity: [1, -1], "
       "reference: ";
   const std::string held = "boundaries: [{type: fixed, on: x_min}]\n";
-  for (const std::string kernel : {"", "kernel: linear\n", "kernel: umls\n", "kernel: umls\numls: {gradient: exact_force}\n"}) {
-    const std::string name = kernel.empty() ? "" : kernel.find("exact") != std::string::npos ? "_exact_force" : "_" + kernel.substr(8, 4);
+  for (const auto& [name, kernel] : {std::pair<std::string, std::string>{"", ""},
+                                     {"_linear", "kernel: linear\n"},
+                                     {"_umls", "kernel: umls\n"},
+                                     {"_exact_force", "kernel: umls\numls: {gradient: exact_force}\n"}}) {
     all.push_back({"references" + name, {.more = kernel, .bodies = moving_bodies}});
     all.push_back({"references_never" + name, {.more = kernel, .bodies = hanging_body + "{update: never}}]\n", .boundaries = held}});
   }
   all.push_back({"references_tpic", {.more = "transfer: {scheme: tpic}\n", .bodies = moving_bodies}});
-  all.push_back({"references_whole", {.bodies = hanging_body + "{update: adaptive, volume_change: 1.0e-3}}]\n", .boundaries = held}});
+  all.push_back({"references_by_volume", {.bodies = hanging_body + "{update: adaptive, volume_change: 1.0e-3}}]\n", .boundaries = held}});
 
   SceneParts two_by_tpic = two_materials;
   two_by_tpic.more = "transfer: {scheme: tpic}\n";

@@ -37,7 +37,7 @@ void forget_reference(Model<D>& m)
   make_ready(m);
 }
 
-/// Turns about the centre with one radian a second while it grows at a rate.
+/// Turns about the centre [rad/s] while it grows [1/s].
 template <int D>
 std::function<Vec<D>(const Vec<D>&)> turning(Real spin, Real growth)
 {
@@ -51,10 +51,10 @@ std::function<Vec<D>(const Vec<D>&)> turning(Real spin, Real growth)
 
 constexpr Real step = 1e-3;  // s, a tenth of what is stable
 template <int D>
-void run(Model<D>& m, int steps, Real dt = step)
+void run(Model<D>& m, int steps)
 {
   for (int i = 0; i < steps; ++i)
-    make_step(m, dt);
+    make_step(m, step);
   end_sweeps(m);
 }
 
@@ -136,28 +136,37 @@ TYPED_TEST(ReferenceIn, FliesThroughCellsWithoutStrain)
   }
 }
 
-TEST(Reference, IsRenewedByABodyAsAWholeWhenAParticleIsDue)
+/// How often a block is renewed in 100 steps; whenever it is, all of its particles are.
+int renewals(const ReferenceOptions& options, const std::function<Vec<2>(const Vec<2>&)>& velocity)
 {
-  using Of = Kind<2, Projected>;
-  const ReferenceOptions by_shift{ReferenceUpdate::adaptive, 10, {}, 0.1};
-  auto m = block<Of>(by_shift, Scheme::tpic, turning<2>(1, 0));
-  const auto is_renewed = [&] {
-    end_sweeps(m);
+  auto m = block<Kind<2, Projected>>(options, Scheme::tpic, velocity);
+  int found = 0;
+  for (int i = 0; i < 100; ++i) {
+    run(m, 1);
     const auto& p = m.state.particles;
     const std::size_t n = p.id.size();
     std::size_t fresh = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      fresh += p.reference[i] == p.x[i] ? 1 : 0;
+    for (std::size_t k = 0; k < n; ++k)
+      fresh += p.reference[k] == p.x[k] ? 1 : 0;
     EXPECT_TRUE(fresh == 0 || fresh == n) << fresh << " of " << n;
-    return fresh == n;
-  };
-  int renewals = 0;
-  for (int i = 0; i < 100; ++i) {
-    make_step(m, step);
-    renewals += is_renewed() ? 1 : 0;
+    found += fresh == n ? 1 : 0;
   }
-  EXPECT_GT(renewals, 1);
-  EXPECT_LT(renewals, 20);
+  return found;
+}
+
+TEST(Reference, IsRenewedByTheCriterionThatIsGiven)
+{
+  const auto adaptive = [](std::optional<Real> distortion, std::optional<Real> volume_change, std::optional<Real> shift) {
+    return ReferenceOptions{ReferenceUpdate::adaptive, distortion, volume_change, shift};
+  };
+  const auto spin = turning<2>(1, 0), shrink = turning<2>(0, -1);
+  const auto shear = [](const Vec<2>& x) { return Vec<2>(2 * (x[1] - 0.5), 0); };
+  EXPECT_GT(renewals(adaptive(10, {}, 0.1), spin), 1);
+  EXPECT_LT(renewals(adaptive(10, {}, 0.1), spin), 20);
+  EXPECT_EQ(renewals(adaptive({}, {}, {}), spin), 0) << "a rotation is no distortion";
+  EXPECT_GT(renewals(adaptive({}, {}, {}), shear), 0);
+  EXPECT_EQ(renewals(adaptive({}, 0.05, {}), shear), 0) << "shear keeps the volume";
+  EXPECT_GT(renewals(adaptive({}, 0.05, {}), shrink), 0);
 }
 
 }  // namespace
