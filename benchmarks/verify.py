@@ -62,6 +62,7 @@ CASES = [
     "granular_layer",
     "granular_chute",
     "clay_block",
+    "softening_band",
     "strip_footing",
     "factor_of_safety",
     "column_collapse",

@@ -35,12 +35,16 @@ struct Point {
 template <class T>
 struct ReturnMap {
   const DruckerPrager::Constants& c;
-  T plastic_strain;
+  T plastic_strain;  ///< at which the cone is taken
+  bool softens;      ///< whether the cone softens during the step
   ConeOf<T> start = c.cone_at(plastic_strain);
-  T left = sqrt3 * (c.softening_strain - plastic_strain);  ///< multiplier at which the residual cone is reached
-  Cone slope{c.slope.q / sqrt3, c.slope.k / sqrt3};        ///< change of the cone per multiplier until then
+  T left = softens ? T(sqrt3 * (c.softening_strain - plastic_strain)) : T(never);  ///< multiplier at which the residual cone is reached
+  Cone slope = softens ? Cone{c.slope.q / sqrt3, c.slope.k / sqrt3} : Cone{0, 0};  ///< change of the cone per multiplier until then
 
-  ConeOf<T> cone_after(const T& multiplier) const noexcept { return c.cone_at(T(plastic_strain + multiplier * (1 / sqrt3))); }
+  ConeOf<T> cone_after(const T& multiplier) const noexcept
+  {
+    return softens ? c.cone_at(T(plastic_strain + multiplier * (1 / sqrt3))) : start;
+  }
 
   /// Return along the cone: tau decreases by G and the mean stress by K q_psi per multiplier.  While the cone softens linearly the
   /// consistency condition is a m^2 - b m + excess = 0, of which the smallest root is taken; without a root the strength drops to residual
@@ -152,7 +156,7 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   const T opened = get(state, &State::opened_volume), plastic_strain = get(state, &State::plastic_strain);
   const auto closing = opened > 0 && trial.mean < 0;
   trial.mean = where(closing, trial.mean + c.bulk * opened, trial.mean);
-  const ReturnMap<T> map{c, plastic_strain};
+  const ReturnMap<T> map{c, in.softened_at != nullptr ? *in.softened_at : plastic_strain, in.softened_at == nullptr};
   const Point<T> end = map(trial, where(closing, T(0), T(c.cutoff)));
 
   const T remaining = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // avoids 0 / 0 in lanes without shear
@@ -172,10 +176,10 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
 template Mat3 DruckerPrager::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> DruckerPrager::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
 
-Real DruckerPrager::yield(const Mat3&, const State& state) const noexcept
+Real DruckerPrager::yield(const Mat3&, const State& state, Real softened_at) const noexcept
 {
   const Constants c = constants();
-  const Cone now = c.cone_at(state.plastic_strain);
+  const Cone now = c.cone_at(softened_at);
   return cone_yield(state, c.bulk, c.shear, now.q, now.k);
 }
 

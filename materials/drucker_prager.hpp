@@ -5,6 +5,7 @@
 
 #include "materials/hencky_plastic.hpp"
 #include "materials/logarithm.hpp"
+#include "materials/softening_length.hpp"
 
 namespace talus {
 
@@ -79,7 +80,13 @@ struct DruckerPrager : ConePlastic, SoilStrength {
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
   /// The yield function tau + q s - k [Pa] of the Kirchhoff stress that belongs to the elastic strain of `state`; the Cauchy stress is the
   /// Kirchhoff stress over J.
-  Real yield(const Mat3& stress, const State& state) const noexcept;
+  Real yield(const Mat3& stress, const State& state) const noexcept { return yield(stress, state, state.plastic_strain); }
+  /// The same for the strength at another plastic strain.
+  Real yield(const Mat3& stress, const State& state, Real softened_at) const noexcept;
+
+  using Kinds = TypeList<DruckerPrager, WithSofteningLength<DruckerPrager>>;
+  using Widest = WithSofteningLength<DruckerPrager>;
+  auto kind() const { return kind_by_softening_length(*this); }
 };
 
 }  // namespace talus

@@ -55,6 +55,8 @@ void SoilStrength::check(std::vector<std::string>& problems) const
     problems.emplace_back("residual_friction_angle and residual_cohesion need softening_strain");
   if (softening_strain && !residual_friction_angle && !residual_cohesion)
     problems.emplace_back("softening_strain needs residual_friction_angle or residual_cohesion");
+  if (softening_length && !softening_strain)
+    problems.emplace_back("softening_length needs softening_strain");
 }
 
 void SoilStrength::divide_shear_strength(Real factor) noexcept

@@ -62,7 +62,7 @@ struct ConePlastic : HenckyPlastic {
 /// The strength of a Mohr-Coulomb soil and its softening: angles in degrees, cohesions and cut-off in Pa.
 struct SoilStrength {
   Real friction_angle{}, cohesion{}, dilation_angle = 0;
-  std::optional<Real> tension_cutoff, residual_friction_angle, residual_cohesion, softening_strain;
+  std::optional<Real> tension_cutoff, residual_friction_angle, residual_cohesion, softening_strain, softening_length;
 
   Real softened_friction_angle() const noexcept { return residual_friction_angle.value_or(friction_angle); }
   Real softened_cohesion() const noexcept { return residual_cohesion.value_or(cohesion); }
@@ -83,14 +83,18 @@ template <class Law>
 constexpr auto softening_fields(std::string_view cutoff_meaning, std::string_view softening_meaning)
 {
   using Some = std::optional<Real>;
-  return std::tuple{optional<Law, Real>("dilation_angle", &Law::dilation_angle, from_to_below(0, 90), "deg",
-                                        "angle of dilation, at most every angle of friction"),
-                    optional<Law, Some>("tension_cutoff", &Law::tension_cutoff, non_negative, "Pa", cutoff_meaning),
-                    optional<Law, Some>("residual_friction_angle", &Law::residual_friction_angle, from_to_below(0, 90), "deg",
-                                        "angle of friction after softening; without it the friction stays"),
-                    optional<Law, Some>("residual_cohesion", &Law::residual_cohesion, non_negative, "Pa",
-                                        "cohesion after softening; without it the cohesion stays"),
-                    optional<Law, Some>("softening_strain", &Law::softening_strain, positive, "-", softening_meaning)};
+  return std::tuple{
+      optional<Law, Real>("dilation_angle", &Law::dilation_angle, from_to_below(0, 90), "deg",
+                          "angle of dilation, at most every angle of friction"),
+      optional<Law, Some>("tension_cutoff", &Law::tension_cutoff, non_negative, "Pa", cutoff_meaning),
+      optional<Law, Some>("residual_friction_angle", &Law::residual_friction_angle, from_to_below(0, 90), "deg",
+                          "angle of friction after softening; without it the friction stays"),
+      optional<Law, Some>("residual_cohesion", &Law::residual_cohesion, non_negative, "Pa",
+                          "cohesion after softening; without it the cohesion stays"),
+      optional<Law, Some>("softening_strain", &Law::softening_strain, positive, "-", softening_meaning),
+      optional<Law, Some>("softening_length", &Law::softening_length, positive, "m",
+                          "over which the plastic strain is averaged that softens; shear bands are 2 pi times as wide; without "
+                          "it their width is that of the cells")};
 }
 
 }  // namespace talus

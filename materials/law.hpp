@@ -22,6 +22,9 @@ struct IncrementOf {
   Real dt;                  ///< [s]
   T viscous;                ///< artificial viscous pressure of the step [Pa], not in `stress`; it works on what keeps internal energy
   bool elastic;             ///< true in a stage that suspends yielding: answer elastically, leave hardening variables alone
+  /// Plastic strain at which the strength softens, constant in the step; without it that of the history, which grows in the step.  See
+  /// softening_length.hpp.
+  const T* softened_at = nullptr;
 };
 using Increment = IncrementOf<Real>;
 
@@ -143,7 +146,8 @@ void put(StateLanes<State>& lanes, Sym3 Owner::*member, const Sym3Of<SimdReal>& 
 ///   Real diffusivity(const Constants&) const noexcept               largest diffusivity, of momentum or heat [m^2/s]: bounds the step
 ///   void divide_strength(Real factor) noexcept                      parameters whose shear strength is that over the factor
 ///   using Kinds = TypeList<...>;  std::variant<...> kind() const    laws to be run instead, where the parameters decide which history
-///                                                                   there is; the law itself is the kind that has all of it
+///                                                                   there is; the law itself is the kind that has all of it, or
+///   using Widest = ...                                              that kind is this one
 ///   static constexpr bool isochoric = true                          plastic flow keeps the volume: its bodies average it by default
 ///   static constexpr bool objective = false                         it answers a superposed rotation with stress (see is_objective)
 ///   update and wave_speed for several particles at once             written once as templates over T = Real and T = SimdReal; the history
@@ -191,7 +195,10 @@ Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in
   for (int lane = 0; lane < states.count; ++lane) {
     const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
     typename L::State state = states.of(lane);
-    const Mat3 after = law.update(Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic}, state, constants);
+    const Real softened_at = in.softened_at != nullptr ? (*in.softened_at)[lane] : 0;
+    const Mat3 after =
+        law.update(Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic, in.softened_at != nullptr ? &softened_at : nullptr},
+                   state, constants);
     states.set(lane, state);
     for (Index k = 0; k < 9; ++k)
       stress(k).set(lane, after(k));

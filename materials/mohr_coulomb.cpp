@@ -279,7 +279,7 @@ Mat3Of<T> MohrCoulomb::update(const IncrementOf<T>& in, StateOf<T, State>& state
   // Volume that was opened before closes first; the material has no tension meanwhile.
   const T opened = get(state, &State::opened_volume), plastic_strain = get(state, &State::plastic_strain);
   const auto closing = opened > 0 && mean < 0;
-  const ShearStrengthOf<T> strength = c.strength_at(plastic_strain);
+  const ShearStrengthOf<T> strength = c.strength_at(in.softened_at != nullptr ? *in.softened_at : plastic_strain);
   const T size = 0.5 * square_root_of_3 * trial.shear;
   const ShearDirection<T> direction(trial.shear_strain, size);
   const auto inside = !closing && surely_inside<T>(direction, mean, 2 * c.shear * size, c.shear, strength, c.cutoff);
@@ -295,7 +295,7 @@ Mat3Of<T> MohrCoulomb::update(const IncrementOf<T>& in, StateOf<T, State>& state
   if (!any_of(changed))
     return elastic();
   T strain = plastic_strain + map.plastic_strain(end);
-  if (c.softening_strain < infinite && any_of(flows)) {
+  if (c.softening_strain < infinite && in.softened_at == nullptr && any_of(flows)) {
     const auto [softened, softened_strain] = map.softened(end, plastic_strain, flows);
     end = where(flows, softened, end);
     strain = where(flows, softened_strain, strain);
@@ -318,13 +318,13 @@ Mat3Of<T> MohrCoulomb::update(const IncrementOf<T>& in, StateOf<T, State>& state
 template Mat3 MohrCoulomb::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> MohrCoulomb::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
 
-Real MohrCoulomb::yield(const Mat3&, const State& state) const noexcept
+Real MohrCoulomb::yield(const Mat3&, const State& state, Real softened_at) const noexcept
 {
   const Constants c = constants();
   const Mat3 strain = 0.5 * unpack(log1p(state.elastic_left));
   const Vec3 shear = Eigen::SelfAdjointEigenSolver<Mat3>(dev(strain), Eigen::EigenvaluesOnly).eigenvalues();
   const Real mean = c.bulk * strain.trace(), s1 = mean + 2 * c.shear * shear[2], s3 = mean + 2 * c.shear * shear[0];
-  return std::max(0.5 * excess(s1, s3, c.strength_at(state.plastic_strain)), s1 - c.cutoff);
+  return std::max(0.5 * excess(s1, s3, c.strength_at(softened_at)), s1 - c.cutoff);
 }
 
 void MohrCoulomb::check(std::vector<std::string>& problems) const

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "materials/hencky_plastic.hpp"
+#include "materials/softening_length.hpp"
 
 namespace talus {
 
@@ -68,7 +69,13 @@ struct MohrCoulomb : HenckyPlastic, SoilStrength {
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
   /// The yield function [Pa]: the larger of (s1 - s3)/2 + sine (s1 + s3)/2 - cohesive and s1 - tension_cutoff, for the Kirchhoff stress
   /// that belongs to the elastic strain of `state`; the Cauchy stress is the Kirchhoff stress over J.
-  Real yield(const Mat3& stress, const State& state) const noexcept;
+  Real yield(const Mat3& stress, const State& state) const noexcept { return yield(stress, state, state.plastic_strain); }
+  /// The same for the strength at another plastic strain.
+  Real yield(const Mat3& stress, const State& state, Real softened_at) const noexcept;
+
+  using Kinds = TypeList<MohrCoulomb, WithSofteningLength<MohrCoulomb>>;
+  using Widest = WithSofteningLength<MohrCoulomb>;
+  auto kind() const { return kind_by_softening_length(*this); }
 };
 
 }  // namespace talus

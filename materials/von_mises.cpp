@@ -1,5 +1,7 @@
 #include "materials/von_mises.hpp"
 
+#include <fmt/format.h>
+
 #include "materials/radial_return.hpp"
 #include "materials/scalar_root.hpp"
 
@@ -12,10 +14,12 @@ namespace {
 template <class T>
 struct Hardening {
   const VonMises& law;
+  const VonMises::Constants& c;
+  const T* softened_at;  ///< as IncrementOf::softened_at
   PowerNear<T> gain;
 
-  Hardening(const VonMises& of, const BinomialSeries& binomial, const T& plastic_strain) noexcept
-      : law(of), gain(of.power ? plastic_strain : T(0), binomial)
+  Hardening(const VonMises& of, const VonMises::Constants& constants, const T& plastic_strain, const T* at) noexcept
+      : law(of), c(constants), softened_at(at), gain(of.power ? plastic_strain : T(0), constants.power)
   {}
   ValueAndSlopeOf<T> operator()(const T& plastic_strain) const noexcept
   {
@@ -31,7 +35,18 @@ struct Hardening {
       strength.value += gained;
       strength.slope += where(plastic_strain > 0, law.power->exponent * gained / above_nothing(plastic_strain), infinitely_steep);
     }
+    if (c.lost > 0) {
+      const bool constant = softened_at != nullptr;
+      strength.value -= c.lost_at<T>(constant ? *softened_at : plastic_strain);
+      if (!constant)
+        strength.slope -= where(c.softening * plastic_strain < c.lost, c.softening, 0);
+    }
     return strength;
+  }
+  /// The lowest strength that softening can still lead to, of what is not less than `start` without it.
+  T least(const T& start, const T& plastic_strain) const noexcept
+  {
+    return c.lost > 0 && softened_at == nullptr ? T(start - (c.lost - c.lost_at<T>(plastic_strain))) : start;
   }
 };
 
@@ -63,7 +78,8 @@ struct VonMisesReturn {
   {
     using std::max;
     const T going_on = max(start.value, talus::von_mises(stress_before));  // continuing flow hardens at the same rate
-    return positive_root<T>(*this, (mises - start.value) / stiffness, (mises - going_on) / (stiffness + start.slope), yields);
+    return positive_root<T>(*this, (mises - slow.least(start.value, plastic_strain)) / stiffness,
+                            (mises - going_on) / (stiffness + start.slope), yields);
   }
 };
 
@@ -81,21 +97,43 @@ VonMises::Constants VonMises::constants() const noexcept
   const Moduli elastic = moduli();
   return {.bulk = elastic.bulk,
           .shear = elastic.shear,
-          .closed_form = !voce && !power && !rate,
+          .closed_form = !voce && !power && !rate && (!residual_stress || softening_length),
           .rate_inverse = rate ? 1 / rate->reference_rate : 0,
           .rate_power = rate ? 1 / rate->exponent : 1,
-          .power = power ? power->exponent : 1};
+          .power = power ? power->exponent : 1,
+          .lost = residual_stress ? yield_stress - *residual_stress : 0,
+          .softening = residual_stress && softening_strain ? (yield_stress - *residual_stress) / *softening_strain : 0};
 }
 
-Real VonMises::flow_stress(Real plastic_strain, Real plastic_rate) const noexcept
+void VonMises::check(std::vector<std::string>& problems) const
+{
+  Elasticity::check(problems);
+  if (residual_stress && *residual_stress > yield_stress)
+    problems.push_back(fmt::format("residual_stress {} is above yield_stress {}", *residual_stress, yield_stress));
+  if (residual_stress.has_value() != softening_strain.has_value())
+    problems.emplace_back("residual_stress and softening_strain need each other");
+  if (softening_length && !softening_strain)
+    problems.emplace_back("softening_length needs softening_strain");
+  const Constants c = constants();
+  if (!softening_length && c.softening >= 3 * c.shear)
+    problems.push_back(
+        fmt::format("softening by {:.4g} Pa per plastic strain is more than three times the shear modulus, {:.4g} Pa, which a "
+                    "material of its own cannot follow: take a larger softening_strain or a softening_length",
+                    c.softening, 3 * c.shear));
+}
+
+Real VonMises::flow_stress(Real plastic_strain, Real plastic_rate, Real softened_at) const noexcept
 {
   const Real factor = rate ? 1 + std::pow(plastic_rate / rate->reference_rate, 1 / rate->exponent) : 1;
-  return Hardening<Real>(*this, constants().power, plastic_strain)(plastic_strain).value * factor;
+  const Constants c = constants();
+  return Hardening<Real>(*this, c, plastic_strain, &softened_at)(plastic_strain).value * factor;
 }
 
 void VonMises::divide_strength(Real factor) noexcept
 {
   yield_stress /= factor;
+  if (residual_stress)
+    *residual_stress /= factor;
   hardening_modulus /= factor;
   if (voce)
     voce->saturation /= factor;
@@ -112,7 +150,7 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
     return no_answer_somewhere(*this, in, state, c);
   const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // change of the Cauchy stress per strain, at constant J
   const T plastic_strain = get(state, &State::plastic_strain);
-  const Hardening<T> slow(*this, c.power, plastic_strain);
+  const Hardening<T> slow(*this, c, plastic_strain, in.softened_at);
   const ValueAndSlopeOf<T> start = slow(plastic_strain);
   const auto yields = mises > start.value;
   if (in.elastic || !any_of(yields)) {
@@ -133,9 +171,10 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
 template Mat3 VonMises::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> VonMises::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
 
-Real VonMises::yield(const Mat3& stress, const State& state) const noexcept
+Real VonMises::yield(const Mat3& stress, const State& state) const noexcept { return yield(stress, state, state.plastic_strain); }
+Real VonMises::yield(const Mat3& stress, const State& state, Real softened_at) const noexcept
 {
-  return talus::von_mises(stress) - flow_stress(state.plastic_strain, 0);
+  return talus::von_mises(stress) - flow_stress(state.plastic_strain, 0, softened_at);
 }
 
 }  // namespace talus

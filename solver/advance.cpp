@@ -181,7 +181,18 @@ void conduct_heat(Model<D>& m, Real dt)
     conduct_heat(m.problem.mesh, m.state.materials[static_cast<std::size_t>(strips.body_of(group))].law(), strips, group, dt, *m.work.heat);
 }
 
-/// Averaged volumes are needed before the stress, heat is conducted after it.
+/// Averages the plastic strain of bodies whose softening has a length.
+template <int D>
+void average_strains(Model<D>& m, Real dt)
+{
+  const ParticleStrips<D>& strips = *m.work.strips;
+  for (AveragedStrain<D>& one : m.work.softening) {
+    const Index body = strips.body_of(one.groups.front());
+    one.advance(m.problem.mesh, m.state.materials[to_size(body)].law(), strips, dt);
+  }
+}
+
+/// Averaged volumes are needed before the stress; heat is conducted and strains are averaged after it.
 template <int D>
 BetweenParts between_parts(Model<D>& m, Real dt)
 {
@@ -200,8 +211,12 @@ BetweenParts between_parts(Model<D>& m, Real dt)
         one.average_block(m.problem.mesh, *m.work.strips, block);
     };
   }
-  if (m.work.heat)
-    between.after_stress = [&m, dt] { conduct_heat(m, dt); };
+  if (m.work.heat || !m.work.softening.empty())
+    between.after_stress = [&m, dt] {
+      if (m.work.heat)
+        conduct_heat(m, dt);
+      average_strains(m, dt);
+    };
   return between;
 }
 

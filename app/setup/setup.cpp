@@ -7,6 +7,7 @@
 #include "app/observers/history.hpp"
 #include "app/observers/runout.hpp"
 #include "app/setup/boundaries_of_scene.hpp"
+#include "app/setup/checks/softening_cells.hpp"
 #include "app/setup/contacts_of_scene.hpp"
 #include "app/setup/loads_of_scene.hpp"
 #include "app/setup/references_of_scene.hpp"
@@ -265,6 +266,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   add_rigid_bodies(scene, mesh, ranks, errors, setup);
   warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, setup.conditions.contacts, ranks,
                       setup.warnings);
+  warn_of_coarse_cells(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, ranks, setup.warnings);
   set_stages(scene, errors, setup);
   warn_of_creeping_surfaces(scene, setup.stages, setup.warnings);
   setup.conditions.water = water_of(

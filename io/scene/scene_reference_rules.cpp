@@ -18,8 +18,10 @@ class ReferenceRules : private SceneRuleBase {
       const std::string path = fmt::format("bodies[{}].reference", i);
       if (const auto sheet = std::ranges::find_if(scene_.rigid, &RigidSpec::is_sheet); sheet != scene_.rigid.end())
         add(path, fmt::format("the sides of the sheet \"{}\" are those of present positions: leave this out", sheet->name));
-      if (conducts(body))
+      if (has_law(body, [](const ConstitutiveLaw& law) { return law.heat().has_value(); }))
         add(path, "heat is conducted between present positions: leave this out, or the conductivity");
+      if (has_law(body, [](const ConstitutiveLaw& law) { return law.strain_averaging().has_value(); }))
+        add(path, "plastic strain is averaged between present positions: leave this out, or the softening_length");
       if (body.reference->update == ReferenceUpdate::never)
         for (const std::string& contact : contacts_of_body(scene_, body))
           add(path + ".update", fmt::format("{}; only `adaptive` knows where the body is", contact));
@@ -28,12 +30,12 @@ class ReferenceRules : private SceneRuleBase {
   }
 
  private:
-  /// Whether a body has a material that conducts heat, at the start or from a stage on.
-  bool conducts(const BodySpec& body) const
+  /// Whether a body has a material whose law does something, at the start or from a stage on.
+  bool has_law(const BodySpec& body, bool (*does_it)(const ConstitutiveLaw&)) const
   {
     const auto does = [&](const std::string& name) {
       const auto material = std::ranges::find(scene_.materials, name, &MaterialSpec::name);
-      return material != scene_.materials.end() && material->law.model()->heat();
+      return material != scene_.materials.end() && does_it(*material->law.model());
     };
     return does(body.material) || std::ranges::any_of(scene_.stages, [&](const StageSpec& stage) {
              return std::ranges::any_of(changes_of(stage).change,

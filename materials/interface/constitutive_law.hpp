@@ -19,6 +19,13 @@ struct HeatConduction {
   int temperature;     ///< its number in the history of a particle
 };
 
+/// Averaging of a plastic strain over a length of the material, see softening_length.hpp.
+struct StrainAveraging {
+  Real length;             ///< [m]
+  Real largest;            ///< strain that counts at most [-]
+  int strain, mean, rate;  ///< their numbers in the history of a particle
+};
+
 /// What all bodies with a law have in common, whatever its parameters.
 struct LawDescription {
   std::string_view name, summary;
@@ -73,6 +80,7 @@ class ConstitutiveLaw {
   virtual std::shared_ptr<const ConstitutiveLaw> weakened(Real factor) const = 0;
   virtual std::optional<Real> shear_modulus() const noexcept = 0;  ///< elastic one at rest [Pa], of laws that have it
   virtual std::optional<HeatConduction> heat() const noexcept = 0;
+  virtual std::optional<StrainAveraging> strain_averaging() const noexcept = 0;
 
  private:
   const LawDescription& description_;  ///< constant, of the type of the law

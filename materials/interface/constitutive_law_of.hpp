@@ -67,8 +67,9 @@ inline constexpr bool has_prestress = requires(const L& law, typename L::State& 
   law.prestress(Mat3(), state);
 };
 
+/// With the history of this kind of a law.
 template <class L>
-const LawDescription& law_description() noexcept
+const LawDescription& kind_description() noexcept
 {
   using State = typename L::State;
   static const auto variables = detail::variables_of<State>();
@@ -82,6 +83,14 @@ const LawDescription& law_description() noexcept
                                           .is_fluid = std::is_base_of_v<WeaklyCompressible, L>};
   return description;
 }
+template <class L>
+const LawDescription& law_description() noexcept
+{
+  if constexpr (requires { typename L::Widest; })
+    return kind_description<typename L::Widest>();
+  else
+    return kind_description<L>();
+}
 
 template <class L>
 class ConstitutiveLawOf final : public ConstitutiveLaw {
@@ -92,7 +101,7 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   static_assert(std::is_trivially_destructible_v<State> && (std::is_empty_v<State> || sizeof(State) % sizeof(Real) == 0),
                 "a history consists of numbers and symmetric tensors");
 
-  explicit ConstitutiveLawOf(const L& law) : ConstitutiveLaw(law_description<L>()), law_(law), constants_(law.constants()) {}
+  explicit ConstitutiveLawOf(const L& law) : ConstitutiveLaw(kind_description<L>()), law_(law), constants_(law.constants()) {}
 
   const L& parameters() const noexcept { return law_; }
   const typename L::Constants& constants() const noexcept { return constants_; }
@@ -184,6 +193,17 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
         if (const auto temperature = description().scalar_variable("temperature"))
           return HeatConduction{*law_.conductivity, law_.specific_heat, *temperature};
     return std::nullopt;
+  }
+  std::optional<StrainAveraging> strain_averaging() const noexcept override
+  {
+    if constexpr (requires { law_.averaging_length(); })
+      return StrainAveraging{.length = law_.averaging_length(),
+                             .largest = law_.largest_averaged(),
+                             .strain = place_in_state<State>(&State::plastic_strain),
+                             .mean = place_in_state<State>(&State::mean_plastic_strain),
+                             .rate = place_in_state<State>(&State::mean_plastic_rate)};
+    else
+      return std::nullopt;
   }
 
  private:

@@ -101,6 +101,8 @@ class StepSolver {
     PointState to = from;
     to.F += H * from.F;
     to.stress = law_.update(Increment{to.F, H / dt, from.stress, dt, 0, false}, to.history.data());
+    if (const auto averaging = law_.strain_averaging())  // one point stands for a body that deforms evenly
+      to.history[static_cast<std::size_t>(averaging->mean)] = to.history[static_cast<std::size_t>(averaging->strain)];
     return to;
   }
 

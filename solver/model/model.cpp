@@ -161,37 +161,54 @@ void find_forces(const Model<D>& m, Real time, const StripColumns<D>& columns, s
 
 namespace {
 
-/// Finds the groups of particles that average their volumes, by those that do it as one.  Collective.
-template <int D>
-void find_averaged_bodies(Model<D>& m)
+/// Puts the groups of particles into parts that are averaged as one, the same parts of `all` used again.  A group takes part if takes_part(material);
+/// it is averaged with those of its velocity field that have the same with(material), unless that is `none`.
+template <class Part, int D>
+void find_parts(const Model<D>& m, std::vector<Part>& all, auto&& takes_part, auto&& with, auto&& make)
 {
-  std::vector<AveragedBodies<D>>& all = m.work.averaged;
-  const std::vector<Material>& materials = m.state.materials;
-  const auto with = [&](Index body) { return averages_with(materials[static_cast<std::size_t>(body)]); };
-  for (AveragedBodies<D>& one : all)
-    one.groups.clear();
-  std::size_t used = 0;
+  for (Part& part : all)
+    part.groups.clear();
   const ParticleStrips<D>& strips = *m.work.strips;
   const auto field = [&](Index group) { return m.problem.field_of(strips.body_of(group), strips.is_behind(group)); };
+  auto end = all.begin();
   for (Index group = 0; group < strips.groups(); ++group) {
-    if (!materials[static_cast<std::size_t>(strips.body_of(group))].averages_volume)
+    const Material& material = m.state.materials[to_size(strips.body_of(group))];
+    if (!takes_part(material))
       continue;
-    const auto same = std::find_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(used), [&](const AveragedBodies<D>& one) {
-      const Index first = one.groups.front();
-      return with(strips.body_of(group)) != none && with(strips.body_of(first)) == with(strips.body_of(group)) &&
-             field(first) == field(group);
+    const auto same = std::find_if(all.begin(), end, [&](const Part& part) {
+      const Index first = part.groups.front(), number = with(material);
+      return number != none && number == with(m.state.materials[to_size(strips.body_of(first))]) && field(first) == field(group);
     });
-    if (same != all.begin() + static_cast<std::ptrdiff_t>(used)) {
+    if (same != end) {
       same->groups.push_back(group);
       continue;
     }
-    if (used == all.size())
-      all.push_back({{},
-                     m.problem.subdomain.alone() ? NodePatchSums<D, 2>(m.problem.mesh)
-                                                 : NodePatchSums<D, 2>(*m.problem.ranks, m.problem.mesh, m.problem.subdomain)});
-    all[used++].groups.push_back(group);
+    if (end == all.end()) {
+      all.push_back(make());
+      end = all.end() - 1;
+    }
+    (end++)->groups.push_back(group);
   }
-  all.erase(all.begin() + static_cast<std::ptrdiff_t>(used), all.end());
+  all.erase(end, all.end());
+}
+
+/// Finds the groups of particles that average their volumes or their plastic strain, by those that do it as one.  Collective.
+template <int D>
+void find_averaged_bodies(Model<D>& m)
+{
+  Problem<D>& problem = m.problem;
+  const bool alone = problem.subdomain.alone();
+  find_parts(
+      m, m.work.averaged, [](const Material& material) { return material.averages_volume; },
+      [](const Material& material) { return averages_with(material); },
+      [&] {
+        return AveragedBodies<D>{
+            {}, alone ? NodePatchSums<D, 2>(problem.mesh) : NodePatchSums<D, 2>(*problem.ranks, problem.mesh, problem.subdomain)};
+      });
+  find_parts(
+      m, m.work.softening, [](const Material& material) { return material.law().strain_averaging().has_value(); },
+      [](const Material& material) { return material.kind; },
+      [&] { return alone ? AveragedStrain<D>(problem.mesh) : AveragedStrain<D>(*problem.ranks, problem.mesh, problem.subdomain); });
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "solver/state/nodes.hpp"
 #include "solver/state/step_sums.hpp"
 #include "solver/state/tracked_ids.hpp"
+#include "solver/stress/average_strain.hpp"
 #include "solver/stress/average_volume.hpp"
 #include "solver/stress/conduct_heat.hpp"
 #include "solver/strips/particle_strips.hpp"
@@ -43,8 +44,9 @@ struct Workspace {
   std::vector<ParticleLoadSums<D>> load_sums;             ///< used if loads act on particles
   std::vector<ExactSums<ForceAndMoment<D>>> on_surfaces;  ///< forces of each load on a surface, of the own nodes [N]
 
-  std::vector<AveragedBodies<D>> averaged;  ///< bodies that average their volumes, while particles are in strips
-  std::optional<HeatSums<D>> heat;          ///< used if a body conducts heat
+  std::vector<AveragedBodies<D>> averaged;   ///< bodies that average their volumes, while particles are in strips
+  std::vector<AveragedStrain<D>> softening;  ///< bodies whose softening has a length, while particles are in strips
+  std::optional<HeatSums<D>> heat;           ///< used if a body conducts heat
 };
 
 }  // namespace talus

@@ -88,6 +88,7 @@ inline std::vector<SceneCase> scenes_of_all()
   for_each_type(Laws{}, [&]<class L>() { law(std::string(L::name), law_text(law_example<L>())); });
   law("neo_hookean_viscous", "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3, bulk_viscosity: {}");
   law("drucker_prager_softening", soil_law);
+  law("drucker_prager_softening_length", soil_law + ", softening_length: 0.3");
   law("mohr_coulomb_softening",
       "law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, dilation_angle: 8, "
       "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
@@ -297,6 +298,8 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"sheets", sheet});
   sheet.more += "kernel: umls\ntransfer: {scheme: apic}\n";
   all.push_back({"sheets_umls", sheet});
+  sheet.law = soil_law + ", softening_length: 0.3" + two_materials.law.substr(soil_law.size());
+  all.push_back({"sheets_softening_length", sheet});
   SceneParts extended = two_materials;
   extended.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended", extended});
@@ -351,6 +354,8 @@ inline std::vector<SceneCase> scenes_of_all()
   loaded_in_3d.loads =
       "loads: [{type: traction, on: \"low:x_max\", pressure: 2.0e3}, {type: traction, on: \"low:y_max\", traction: [1.0e3, 0, -500]}]\n";
   all.push_back({"surface_loads_solid", loaded_in_3d});
+  in_3d.law = soil_law + ", softening_length: 0.3";
+  all.push_back({"softening_length_solid", in_3d});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
   in_3d.law = SceneParts{}.law;
   all.push_back({"solid_umls", in_3d});

@@ -1,0 +1,20 @@
+#pragma once
+// Cells that are too coarse for a softening length.
+#include <string>
+#include <vector>
+
+#include "core/parallel/communicator.hpp"
+#include "core/particles.hpp"
+#include "io/scene/scene.hpp"
+#include "materials/interface/material.hpp"
+#include "mesh/mesh.hpp"
+
+namespace talus {
+
+/// A warning for each body with a softening length whose cells have longer edges, in the mean over its particles: fewer than six cells lie over a
+/// shear band then, which is 2 pi lengths wide.  Every rank has to ask.
+template <int D>
+void warn_of_coarse_cells(const Scene& scene, const Mesh<D>& mesh, const Particles<D>& particles, const std::vector<Body>& bodies,
+                          const std::vector<Material>& materials, Communicator& ranks, std::vector<std::string>& warnings);
+
+}  // namespace talus

@@ -1,0 +1,141 @@
+"""A shear band in a layer that softens: its width and its work, on meshes that resolve it, with a softening length and without."""
+import numpy as np
+
+import lab as tools
+
+CASE = "softening_band"
+SIZES = {12: "quick", 24: "full", 48: "full"}  # cells over the thickness: 6, 12 and 24 over the band
+ENDS = {6.5: "quick", 6.6: "full", 6.7: "full"}  # m: gmsh then makes other triangles
+MIDDLE = (2, 4)  # m: the part of the layer that is measured
+
+
+def middle(frame):
+    """Which particles are in the middle part of the layer."""
+    x = frame["position"][:, 0]
+    return (x > MIDDLE[0]) & (x < MIDDLE[1])
+
+
+def frame_at(run, time):
+    """The particle file of a time."""
+    return min(run.frames, key=lambda frame: abs(frame.time - time))
+
+
+def width(run, data):
+    """Width of the band [m]: that of a band of the closed form p(x) with the same (integral of p)^2 / integral of p^2, where p is what has flowed
+    while the strength fell."""
+    begin, end = (frame_at(run, data[key]) for key in ("begin of the fall [s]", "end of the fall [s]"))
+    order = {number: i for i, number in enumerate(begin["id"])}
+    rows = [order[number] for number in end["id"]]
+    strain = end["plastic_strain"] - begin["plastic_strain"][rows]
+    inside = middle(end)
+    volume, strain = end["volume"][inside], strain[inside]
+    ratio = (strain * volume).sum()**2 / (strain**2 * volume).sum() / (MIDDLE[1] - MIDDLE[0])
+    quarter = 0.75 * np.pi  # half a band in units of the length of the average
+    return ratio * 2 * quarter * (3 * np.pi + 3) / (1.5 * np.pi + 2)**2
+
+
+def slip_when_softened(data):
+    """Slip across the band [m] at which the strength has fallen to the residual one."""
+    return np.sqrt(3) * (1.5 * np.pi + 2) * 4 / 3 * data["softening length [m]"] * data["softening strain"]
+
+
+def fall(run, data):
+    """Shear stress lost by plastic slip [Pa/m] while the strength falls."""
+    rows = []
+    for key in ("begin of the fall [s]", "end of the fall [s]"):
+        frame = frame_at(run, data[key])
+        inside = middle(frame)
+        volume = frame["volume"][inside]
+        rows.append((np.average(frame["stress"][inside, 3], weights=volume),
+                     np.sqrt(3) * (frame["plastic_strain"][inside] * volume).sum() / (MIDDLE[1] - MIDDLE[0])))
+    (before, slip_before), (after, slip_after) = rows
+    return (before - after) / (slip_after - slip_before)
+
+
+def work(run, data):
+    """Plastic work by area of the layer [J/m^2] at the end."""
+    frame = run.last_frame()
+    inside = middle(frame)
+    return (frame["plastic_work"] * frame["mass"])[inside].sum() / data["density [kg/m^3]"] / (MIDDLE[1] - MIDDLE[0])
+
+
+def measures(run, coarsest, data, what):
+    """Width, fall of the stress and work of one run; the work beside that of the coarsest mesh."""
+    peak, residual = data["peak and residual strength [Pa]"]
+    width_exact, fall_exact = 2 * np.pi * data["softening length [m]"], (peak - residual) / slip_when_softened(data)
+    results = [
+        tools.Result(CASE, f"width of the band, {what}", "m", width(run, data), "within", data["slack of the width"], width_exact, data["source"], run),
+        tools.Result(CASE, f"shear stress lost by slip, {what}", "Pa/m", fall(run, data), "within", data["slack of the work"], fall_exact, data["source"], run)]
+    if run is not coarsest:
+        results.append(tools.Result(CASE, f"plastic work by area, {what}", "J/m^2", work(run, data), "within", data["slack of the work"],
+                                    work(coarsest, data), "the coarsest mesh", run))
+    return results
+
+
+def profile(run):
+    """Height [m] and plastic strain at the end of the middle part, in slices."""
+    frame = run.last_frame()
+    inside = middle(frame)
+    y, strain, volume = frame["position"][inside, 1], frame["plastic_strain"][inside], frame["volume"][inside]
+    edges = np.linspace(0, 1, 49)
+    weight = np.histogram(y, edges, weights=volume)[0]
+    with np.errstate(invalid="ignore"):
+        return 0.5 * (edges[1:] + edges[:-1]), np.histogram(y, edges, weights=volume * strain)[0] / weight
+
+
+def stress(run):
+    """Time [s] and mean shear stress of the middle part [Pa]."""
+    rows = []
+    for frame in run.frames:
+        inside = middle(frame)
+        rows.append((frame.time, np.average(frame["stress"][inside, 3], weights=frame["volume"][inside])))
+    return np.array(rows).T
+
+
+def draw(figure, with_length, without, data):
+    """Profile of the plastic strain, and stress over time."""
+    left, right = figure.subplots(1, 2)
+    for runs, line in ((with_length, "-"), (without, ":")):
+        for cells, run in runs.items():
+            y, strain = profile(run)
+            left.plot(strain, y, line, label=f"{cells} cells" + ("" if line == "-" else ", no length"))
+            right.plot(*stress(run), line)
+    peak, residual = data["peak and residual strength [Pa]"]
+    softening = slip_when_softened(data)
+    slips = np.array([0, softening, 2 * softening])
+    strength = np.array([peak, residual, residual])
+    right.plot((slips + strength / data["shear modulus [Pa]"]) / data["speed of the plates apart [m/s]"], strength, "k--", label="closed form")
+    left.set(xlabel="plastic strain", ylabel="height [m]")
+    right.set(xlabel="time [s]", ylabel="shear stress [Pa]", xlim=(0, 1.6))
+    left.legend()
+    right.legend()
+
+
+def evaluate(lab):
+    """Results of a shear band."""
+    data = tools.reference(CASE)
+    length = {"materials[0].softening_length": data["softening length [m]"]}
+
+    def run(cells, end, settings, label):
+        sizes = {"mesh.size": 1 / cells, "mesh.regions[0].shape.high": [end, 1]}
+        return lab.run(f"{CASE}/scene.yaml", tools.label(f"{label}_{cells}_{end}"), {**sizes, **settings})
+
+    meshes = [(cells, end) for cells in SIZES for end in ENDS if lab.level == "full" or (SIZES[cells], ENDS[end]) == ("quick", "quick")]
+    cone = {mesh: run(*mesh, length, "cone") for mesh in meshes}
+    planes = run(12, 6.5, {"bodies[0].material": "planes", "materials[1].softening_length": data["softening length [m]"]}, "planes")
+    without = {cells: run(cells, 6.5, {}, "without") for cells in SIZES if (cells, 6.5) in meshes and cells < 48}
+    coarsest = cone[12, 6.5]
+    results = [result for (cells, end), one in cone.items() for result in measures(one, coarsest, data, f"{cells} cells, channel to {end} m")]
+    results += measures(planes, coarsest, data, "12 cells, mohr_coulomb")
+    if lab.level == "full":
+        for kernel, scheme in tools.SUITED.items():
+            if kernel != "projected":
+                other = run(12, 6.5, {**length, "kernel": kernel, "transfer.scheme": scheme}, kernel)
+                results += measures(other, coarsest, data, f"12 cells, {kernel}")
+    for cells, one in without.items():
+        results += [tools.Result(CASE, f"width of the band without a length, {cells} cells", "m", width(one, data), "reported", None, None, "", one),
+                    tools.Result(CASE, f"plastic work by area without a length, {cells} cells", "J/m^2", work(one, data), "reported", None, None, "", one)]
+    with_length = {cells: cone[cells, 6.5] for cells in SIZES if (cells, 6.5) in cone}
+    lab.figure(CASE, "verification_softening_band", lambda figure: draw(figure, with_length, without, data), size=(8, 3.6),
+               caption="Plastic strain and shear stress of a softening layer with a softening length (lines) and without (dots).")
+    return results
