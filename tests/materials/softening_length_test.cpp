@@ -50,8 +50,9 @@ void follows_the_mean(const L& law)
     point.state.mean_plastic_strain = (point.state.plastic_strain + k) / 2;
     Mat3 f = Mat3::Identity();
     f(0, 1) = 1e-5;
-    point.step(f);  // in which 2 m - p changes by 1e-5
-    EXPECT_NEAR(point.stress(0, 1), strength(k), 5 + 1e5 * 1e-5);
+    point.step(f);
+    EXPECT_NEAR(point.stress(0, 1), strength(k), 5);
+    point.state.mean_plastic_strain = (point.state.plastic_strain + k) / 2;  // k as it was in the step
     EXPECT_NEAR(point.law.yield(point.stress, point.state), 0, 2);
   }
   EXPECT_GT(point.state.plastic_work, 0);
