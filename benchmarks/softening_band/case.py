@@ -77,10 +77,10 @@ def profile(run):
     frame = run.last_frame()
     inside = middle(frame)
     y, strain, volume = frame["position"][inside, 1], frame["plastic_strain"][inside], frame["volume"][inside]
-    edges = np.linspace(0, 1, 49)
-    weight = np.histogram(y, edges, weights=volume)[0]
-    with np.errstate(invalid="ignore"):
-        return 0.5 * (edges[1:] + edges[:-1]), np.histogram(y, edges, weights=volume * strain)[0] / weight
+    edges = np.linspace(0, 1, 37)
+    weight, weighted = (np.histogram(y, edges, weights=w)[0] for w in (volume, volume * strain))
+    filled = weight > 0
+    return 0.5 * (edges[1:] + edges[:-1])[filled], weighted[filled] / weight[filled]
 
 
 def stress(run):
