@@ -35,10 +35,11 @@ struct Point {
 template <class T>
 struct ReturnMap {
   const DruckerPrager::Constants& c;
-  T plastic_strain;  ///< at which the cone is taken
-  bool softens;      ///< whether the cone softens during the step
+  T plastic_strain;    ///< at which the cone is taken
+  Real softening_end;  ///< plastic strain at which it has softened; infinite if it is constant during the step
   ConeOf<T> start = c.cone_at(plastic_strain);
-  T left = softens ? T(sqrt3 * (c.softening_strain - plastic_strain)) : T(never);  ///< multiplier at which the residual cone is reached
+  T left = sqrt3 * (softening_end - plastic_strain);  ///< multiplier at which the residual cone is reached
+  bool softens = softening_end < never;
   Cone slope = softens ? Cone{c.slope.q / sqrt3, c.slope.k / sqrt3} : Cone{0, 0};  ///< change of the cone per multiplier until then
 
   ConeOf<T> cone_after(const T& multiplier) const noexcept
@@ -156,7 +157,8 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   const T opened = get(state, &State::opened_volume), plastic_strain = get(state, &State::plastic_strain);
   const auto closing = opened > 0 && trial.mean < 0;
   trial.mean = where(closing, trial.mean + c.bulk * opened, trial.mean);
-  const ReturnMap<T> map{c, in.softened_at != nullptr ? *in.softened_at : plastic_strain, in.softened_at == nullptr};
+  const bool constant = in.softened_at != nullptr;
+  const ReturnMap<T> map{c, constant ? *in.softened_at : plastic_strain, constant ? never : c.softening_strain};
   const Point<T> end = map(trial, where(closing, T(0), T(c.cutoff)));
 
   const T remaining = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // avoids 0 / 0 in lanes without shear

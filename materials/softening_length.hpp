@@ -57,6 +57,8 @@ struct WithSofteningLength : L {
 
   /// The length a of the average [m].
   Real averaging_length() const noexcept { return 4 * *L::softening_length / 3; }
+  /// The width of a shear band while the strength falls [m].
+  Real band_width() const noexcept { return 2 * std::numbers::pi * *L::softening_length; }
   /// What p counts at most in the average: its value in the middle of a band, 1 + sqrt(2) times k, when the softening ends.  Further flow
   /// softens no more material around the band.
   Real largest_averaged() const noexcept { return (1 + std::numbers::sqrt2) * *L::softening_strain; }

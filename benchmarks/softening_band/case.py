@@ -122,11 +122,13 @@ def evaluate(lab):
 
     meshes = [(cells, end) for cells in SIZES for end in ENDS if lab.level == "full" or (SIZES[cells], ENDS[end]) == ("quick", "quick")]
     cone = {mesh: run(*mesh, length, "cone") for mesh in meshes}
-    planes = run(12, 6.5, {"bodies[0].material": "planes", "materials[1].softening_length": data["softening length [m]"]}, "planes")
+    laws = {law: run(12, 6.5, {"bodies[0].material": name, f"materials[{i}].softening_length": data["softening length [m]"]}, name)
+            for i, (name, law) in enumerate({"planes": "mohr_coulomb", "mises": "von_mises"}.items(), start=1)}
     without = {cells: run(cells, 6.5, {}, "without") for cells in SIZES if (cells, 6.5) in meshes and cells < 48}
     coarsest = cone[12, 6.5]
     results = [result for (cells, end), one in cone.items() for result in measures(one, coarsest, data, f"{cells} cells, channel to {end} m")]
-    results += measures(planes, coarsest, data, "12 cells, mohr_coulomb")
+    for law, one in laws.items():
+        results += measures(one, coarsest, data, f"12 cells, {law}")
     if lab.level == "full":
         for kernel, scheme in tools.SUITED.items():
             if kernel != "projected":

@@ -22,6 +22,7 @@ struct HeatConduction {
 /// Averaging of a plastic strain over a length of the material, see softening_length.hpp.
 struct StrainAveraging {
   Real length;             ///< [m]
+  Real band;               ///< width of a shear band [m]
   Real largest;            ///< strain that counts at most [-]
   int strain, mean, rate;  ///< their numbers in the history of a particle
 };

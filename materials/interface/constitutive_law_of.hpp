@@ -198,6 +198,7 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   {
     if constexpr (requires { law_.averaging_length(); })
       return StrainAveraging{.length = law_.averaging_length(),
+                             .band = law_.band_width(),
                              .largest = law_.largest_averaged(),
                              .strain = place_in_state<State>(&State::plastic_strain),
                              .mean = place_in_state<State>(&State::mean_plastic_strain),

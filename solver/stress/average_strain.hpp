@@ -68,20 +68,16 @@ class AveragedStrain {
       });
     });
     flow_.gather(strips, groups, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
-      const auto& gradients = mesh.gradients(c);
-      Vec<D> slope = Vec<D>::Zero();
-      for (std::size_t a = 0; a <= D; ++a) {
-        const auto& [mass, mean, missing] = content_[mesh.cell(c)[a]].sum;
-        if (!(mass > 0))
-          return;  // particles on a facet leave the corner opposite it empty: no gradient, no flow
-        slope += mean / mass * gradients[a];
-      }
+      const std::optional<Vec<D>> slope = gradient_of_mean(mesh, c, content_);
+      if (!slope)
+        return;
       Real mass = 0;
       for (std::size_t p = run.begin; p < run.end; ++p)
         mass += run.columns.mass.of(p);
       for (std::size_t a = 0; a <= D; ++a) {
-        corners[0][static_cast<int>(a)] -= mass * slope.dot(gradients[a]);
-        corners[1][static_cast<int>(a)] += mass * gradients[a].squaredNorm();
+        const Vec<D>& gradient = mesh.gradients(c)[a];
+        corners[0][static_cast<int>(a)] -= mass * slope->dot(gradient);
+        corners[1][static_cast<int>(a)] += mass * gradient.squaredNorm();
       }
     });
   }

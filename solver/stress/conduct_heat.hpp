@@ -40,19 +40,14 @@ void conduct_heat(const Mesh<D>& mesh, const ConstitutiveLaw& law, const Particl
     });
   });
   sums.flow.gather(strips, only, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
-    const auto& gradients = mesh.gradients(c);
-    Vec<D> slope = Vec<D>::Zero();
-    for (std::size_t a = 0; a <= D; ++a) {
-      const auto& [capacity, content] = sums.content[mesh.cell(c)[a]].sum;
-      if (!(capacity > 0))
-        return;  // particles on a facet leave the corner opposite it empty: no gradient, no flow
-      slope += content / capacity * gradients[a];
-    }
+    const std::optional<Vec<D>> slope = gradient_of_mean(mesh, c, sums.content);
+    if (!slope)
+      return;
     Real volume = 0;
     for (std::size_t p = run.begin; p < run.end; ++p)
       volume += run.columns.volume.of(p);
     for (std::size_t a = 0; a <= D; ++a)
-      corners[0][static_cast<int>(a)] = -volume * conductivity * slope.dot(gradients[a]);
+      corners[0][static_cast<int>(a)] = -volume * conductivity * slope->dot(mesh.gradients(c)[a]);
   });
   parallel_for_uneven(strips.blocks(), [&](Index block) {
     for_each_cell_of(strips, only, block, [&](Index c, auto&& runs) {

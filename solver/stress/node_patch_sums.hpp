@@ -2,6 +2,7 @@
 // Sums over the node patches by linear shape functions, for scalars that are averaged or conducted: cheap, and apart from the kernel of the momentum.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -159,5 +160,20 @@ class NodePatchSums {
   HaloExchange copies_;
   SparseRows<Row> of_node_;
 };
+
+/// The gradient in a cell of a mean whose weight and weighted sum are the first two sums at nodes.  None where a corner has no weight: particles on
+/// a facet leave the corner opposite it empty.
+template <int D, int K>
+std::optional<Vec<D>> gradient_of_mean(const Mesh<D>& mesh, Index c, const NodePatchSums<D, K>& sums) noexcept
+{
+  Vec<D> gradient = Vec<D>::Zero();
+  for (std::size_t a = 0; a <= D; ++a) {
+    const auto& row = sums[mesh.cell(c)[a]];
+    if (!(row[0] > 0))
+      return std::nullopt;
+    gradient += row[1] / row[0] * mesh.gradients(c)[a];
+  }
+  return gradient;
+}
 
 }  // namespace talus

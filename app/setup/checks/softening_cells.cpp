@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "core/parallel/exact_sum.hpp"
 
 namespace talus {
 
 namespace {
+
+/// The fewest with which the width of a band was measured to be right, see benchmarks/softening_band.
+constexpr Real cells_of_a_band = 6;
 
 /// Mean length of the edges of a cell [m].
 template <int D>
@@ -37,14 +38,12 @@ void warn_of_coarse_cells(const Scene& scene, const Mesh<D>& mesh, const Particl
       edges.add(mean_edge(mesh, particles.cell[static_cast<std::size_t>(row)]));
     const std::int64_t count = ranks.sum(std::int64_t{bodies[body].end - bodies[body].begin});
     ranks.sum(edges);
-    const Real edge = edges.value() / static_cast<Real>(count), width = 1.5 * std::numbers::pi * averaging->length,
-               length = width / (2 * std::numbers::pi);
-    if (count > 0 && edge > 1.02 * length)
+    const Real edge = edges.value() / static_cast<Real>(count);
+    if (count > 0 && averaging->band < cells_of_a_band * edge)
       warnings.push_back(
-          fmt::format("{}: body \"{}\" has cells of {:.3g} m, its softening_length is {:.3g} m: a shear band, {:.3g} m wide, needs six "
-                      "cells or more to "
-                      "be as wide on any mesh; take cells of at most {:.3g} m where it shears",
-                      to_string(scene.bodies[body].where), bodies[body].name, edge, length, width, length));
+          fmt::format("{}: body \"{}\" has cells of {:.3g} m where shear bands are {:.3g} m wide by its softening_length: they need six "
+                      "cells or more to be as wide on any mesh; take cells of at most {:.3g} m where it shears",
+                      to_string(scene.bodies[body].where), bodies[body].name, edge, averaging->band, averaging->band / cells_of_a_band));
   }
 }
 

@@ -11,8 +11,8 @@
 
 namespace talus {
 
-/// A warning for each body with a softening length whose cells have longer edges, in the mean over its particles: fewer than six cells lie over a
-/// shear band then, which is 2 pi lengths wide.  Every rank has to ask.
+/// A warning for each body with a softening length that has fewer than six cells over a shear band, by the edges of cells in the mean over its
+/// particles.  Every rank has to ask.
 template <int D>
 void warn_of_coarse_cells(const Scene& scene, const Mesh<D>& mesh, const Particles<D>& particles, const std::vector<Body>& bodies,
                           const std::vector<Material>& materials, Communicator& ranks, std::vector<std::string>& warnings);

@@ -83,9 +83,10 @@ time: {{end: 1}}
   };
   write("coarse.yaml", scene(0.2));
   write("fine.yaml", scene(0.3));
-  EXPECT_THAT(talus("check coarse.yaml").err,
-              HasSubstr("coarse.yaml:8:5: body \"slope\" has cells of 0.285 m, its softening_length is 0.2 m: a shear "
-                        "band, 1.26 m wide, needs six cells or more"));
+  EXPECT_THAT(
+      talus("check coarse.yaml").err,
+      HasSubstr("coarse.yaml:8:5: body \"slope\" has cells of 0.285 m where shear bands are 1.26 m wide by its softening_length: they "
+                "need six cells or more to be as wide on any mesh; take cells of at most 0.209 m"));
   EXPECT_THAT(talus("check fine.yaml").err, testing::Not(HasSubstr("softening_length")));
 }
 

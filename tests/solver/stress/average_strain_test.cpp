@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "materials/law_examples.hpp"
 #include "tests/solver/blocks_of_particles.hpp"
 
 namespace talus::average_strain_test {
@@ -16,11 +17,7 @@ constexpr Real length = 0.1;  // of the average [m]
 
 MohrCoulomb clay()
 {
-  MohrCoulomb law;
-  law.density = 2000;
-  law.youngs_modulus = 1e6;
-  law.poisson_ratio = 0.3;
-  law.cohesion = 1e4;
+  auto law = law_example<MohrCoulomb>();
   law.residual_cohesion = 1e3;
   law.softening_strain = 1;
   law.softening_length = 0.75 * length;
