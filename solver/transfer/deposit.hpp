@@ -2,6 +2,7 @@
 // The contributions of the particles of a cell to its stencil: mass, momentum and force through the weights of a kernel.
 #include "kernels/kernel.hpp"
 #include "solver/halo/block_rows.hpp"
+#include "solver/strips/affine_field.hpp"
 #include "solver/strips/reference.hpp"
 
 namespace talus {
@@ -74,13 +75,15 @@ Tension<D> tension_of(const StripColumns<D>& columns, std::size_t first, const W
 }
 
 /// Adds m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v, with `tension` for V sigma G, of
-/// `count` particles from number i on of which `stays` is not zero.  A is the affine field if `affine`; f_p is the force of loads if
+/// `count` particles from number i on of which `stays` is not zero.  A is the affine field, of particles that have moved for a time dt, if
+/// `affine`; f_p is the force of loads if
 /// `loaded`; without `forces` (the second half of MUSL) only momentum is summed.  There is one loop per component, so that all data of the
 /// particle in a loop stay in registers.
 template <bool affine, bool loaded, bool forces, int D, int N>
 void deposit(const StripColumns<D>& columns, std::size_t first, int count, const std::uint8_t* stays, const StencilCell<D, N>& cell,
-             const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
+             const Weights<D, N>& weights, const Tension<D>& tension, Real dt, CellSums<D, N>& sums) noexcept
 {
+  const MatOf<D> field = affine ? affine_field(columns, first, dt) : MatOf<D>();
   alignas(64) Real share[N];  // m_p w_v
   for (int lane = 0; lane < count; ++lane) {
     const std::size_t p = first + static_cast<std::size_t>(lane);
@@ -105,7 +108,9 @@ void deposit(const StripColumns<D>& columns, std::size_t first, int count, const
       if constexpr (forces)
         store(sums.mass + a, load(sums.mass + a) + w);
     }
-    const Mat<D> A = affine ? columns.affine_field().of(p) : Mat<D>(Mat<D>::Zero());
+    Mat<D> A;
+    for (int k = 0; k < D * D; ++k)
+      A(k) = field(k)[lane];
     const Vec<D> v_p = columns.v.of(p), f_p = loaded ? columns.applied.of(p) : Vec<D>(Vec<D>::Zero());
     for (int i = 0; i < D; ++i) {
       Real v_origin = v_p[i];  // v + A (x_v - x) = (v - A (x - origin)) + A (x_v - origin)

@@ -69,9 +69,10 @@ class DirectCell {
   }
 };
 
-/// Adds particles [run.begin, run.end) to `at.sums`.
+/// Adds particles [run.begin, run.end), which have moved for a time dt, to `at.sums`.
 template <bool affine, bool loaded, bool forces, int D, Kernel<D> K>
-void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<D>& run, StripScratch<D>& scratch, DirectCell<D, K>& at)
+void deposit_run(const K& kernel, const StripColumns<D>& columns, Real dt, const CellRun<D>& run, StripScratch<D>& scratch,
+                 DirectCell<D, K>& at)
 {
   const std::uint8_t* const stays = scratch.stays.data();
   for (std::size_t i = run.begin; i < run.end; i += pack_size) {
@@ -80,7 +81,7 @@ void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<
     const bool exact = forces && pairs_force_with_slopes<D>(kernel);
     at.place(kernel, columns.places(), i, count, stays, exact);
     const Tension<D> tension = forces && !exact ? tension_of(columns, i, at.weights) : Tension<D>{};
-    deposit<affine, loaded, forces>(columns, i, count, stays, at.cell, at.weights, tension, at.sums);
+    deposit<affine, loaded, forces>(columns, i, count, stays, at.cell, at.weights, tension, dt, at.sums);
     if constexpr (HasSlopesOfValues<K, D>)
       for (int lane = 0; exact && lane < count; ++lane)
         if (const std::size_t p = i + static_cast<std::size_t>(lane); stays[p] != 0)
@@ -90,8 +91,8 @@ void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<
 
 /// Adds the particles of all runs that stay to the rows of their block.
 template <bool affine, bool loaded, int D, Kernel<D> K>
-TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const StripColumns<D>& columns, StripScratch<D>& scratch,
-                                     Index block, BlockRows<D>& blocks, DirectCell<D, K>& at)
+TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const StripColumns<D>& columns, Real dt,
+                                     StripScratch<D>& scratch, Index block, BlockRows<D>& blocks, DirectCell<D, K>& at)
 {
   for (const CellRun<D>& run : scratch.runs) {
     const auto lightest = lightest_of(run, columns.mass, scratch);
@@ -100,7 +101,7 @@ TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const
     kernel.open(mesh, run.frame->cell, at.cell);
     at.begin_run(run, scratch.runs);
     at.sums.clear(at.cell.padded_size);
-    deposit_run<affine, loaded, true>(kernel, columns, run, scratch, at);
+    deposit_run<affine, loaded, true>(kernel, columns, dt, run, scratch, at);
     at.sums.add_to(blocks.rows(block), blocks.slots(run.frame->cell), *lightest);
   }
 }
@@ -169,12 +170,12 @@ class DirectStrips {
       m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
     });
   }
-  void add(const StripColumns<D>& columns, std::size_t, Index block)
+  void add(const StripColumns<D>& columns, std::size_t, Real dt, Index block)
   {
     if (m_.problem.transfer.affine())
-      columns.applied ? add<true, true>(columns, block) : add<true, false>(columns, block);
+      columns.applied ? add<true, true>(columns, dt, block) : add<true, false>(columns, dt, block);
     else
-      columns.applied ? add<false, true>(columns, block) : add<false, false>(columns, block);
+      columns.applied ? add<false, true>(columns, dt, block) : add<false, false>(columns, dt, block);
   }
   void add_surface_load(const SurfaceLoad<D>& load, const StripColumns<D>& columns, Index block, BlockRows<D, SurfaceSum<D>>& blocks)
   {
@@ -207,9 +208,10 @@ class DirectStrips {
     at_.kept = nullptr, at_.use = KeptUse::compute;
   }
   template <bool affine, bool loaded>
-  void add(const StripColumns<D>& columns, Index block)
+  void add(const StripColumns<D>& columns, Real dt, Index block)
   {
-    in_pass(columns, [&] { deposit_directly<affine, loaded>(of_->kernel, m_.problem.mesh, columns, scratch_, block, of_->blocks, at_); });
+    in_pass(columns,
+            [&] { deposit_directly<affine, loaded>(of_->kernel, m_.problem.mesh, columns, dt, scratch_, block, of_->blocks, at_); });
   }
   /// Opens the cell of a run with the motion of its nodes, and calls f(i, count) for its packs, with their weights.
   void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const SparseRows<NodeMotion<D>>& motion, auto&& f)
@@ -265,7 +267,7 @@ class DirectStrips {
           find_apic_field(columns, i, count, columns.C);
         }
         store_velocity<increments>(columns, i, count, seen, pic);
-        deposit<affine, false, false>(columns, i, count, scratch_.stays.data(), at_.cell, at_.weights, Tension<D>{}, at_.sums);
+        deposit<affine, false, false>(columns, i, count, scratch_.stays.data(), at_.cell, at_.weights, Tension<D>{}, 0, at_.sums);
       });
       at_.sums.add_to(of_->blocks.rows(block), of_->blocks.slots(run.frame->cell), NodeSum<D>::unseen);
     }

@@ -31,7 +31,13 @@ class BlockSweep {
 
   /// `fields`: the rows of all velocity fields.
   BlockSweep(Model<D>& m, std::span<KernelRows<D, K>> fields, Index block)
-      : m_(m), fields_(fields), block_(block), strips_(*m.work.strips), scratch_(scratch_of_thread()), through_(m, scratch_)
+      : m_(m),
+        fields_(fields),
+        block_(block),
+        strips_(*m.work.strips),
+        scratch_(scratch_of_thread()),
+        through_(m, scratch_),
+        moved_for_(carries_affine_field() ? m.state.clock.dt : 0)
   {}
 
   /// Sums the particles as they are, before the first step after they came into strips.
@@ -47,6 +53,7 @@ class BlockSweep {
   /// From nodes to particles and, for the next step, back.
   void advance(const SweepParts& parts, Real dt, Real pic)
   {
+    moved_for_ = carries_affine_field() ? dt : 0;
     if (parts.deposits)
       clear_sums(!parts.orders);
     for_each_strip(parts, [&](std::size_t key, Index number, StripColumns<D>& columns) {
@@ -90,6 +97,12 @@ class BlockSweep {
   }
 
  private:
+  /// The fields of `apic` and `tpic` go back as they were read, as published: with `tpic` it gains nothing to carry them.  Where gradients jump
+  /// between cells, dt C^2 is noise: carried along, `linear` turns particles inside out (docs/theory/transfers.md).
+  bool carries_affine_field() const noexcept
+  {
+    return m_.problem.transfer.scheme == Scheme::aflip && fields_.front().kernel.claims().continuous_gradient;
+  }
   static StripScratch<D>& scratch_of_thread()
   {
     static thread_local StripScratch<D> scratch;
@@ -180,7 +193,7 @@ class BlockSweep {
       add_run(arriving[begin].cell, begin, i);
     }
     find_shares(columns.places(), scratch_);
-    through_.add(columns, arriving.size(), block_);
+    through_.add(columns, arriving.size(), moved_for_, block_);
     add_surface_loads(group, columns);
   }
 
@@ -302,7 +315,7 @@ class BlockSweep {
       for (Real* const share : scratch_.share)
         share[i] = 0;
     }
-    through_.add(columns, n, block_);
+    through_.add(columns, n, moved_for_, block_);
     add_surface_loads(strips_.group(key), columns);
   }
   /// Makes the present configuration the reference of a body that is renewed, and finds out whether it will be in the next step.
@@ -377,6 +390,7 @@ class BlockSweep {
   ParticleStrips<D>& strips_;
   StripScratch<D>& scratch_;
   Through through_;
+  Real moved_for_;  ///< length of the step with which affine fields are carried to where the particles are [s]
 };
 
 }  // namespace talus

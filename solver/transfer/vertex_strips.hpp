@@ -2,6 +2,7 @@
 // Between the particles of strips and the vertices of their cells, for kernels whose weights are barycentric coordinates: four particles at a
 // time.
 #include "solver/model/model.hpp"
+#include "solver/strips/affine_field.hpp"
 #include "solver/strips/reference.hpp"
 #include "solver/transfer/contributions.hpp"
 #include "solver/transfer/kernel_rows.hpp"
@@ -38,9 +39,9 @@ TALUS_ONE_COPY void read_gradients(const Model<D>& m, const KernelRows<D, K>& of
   }
 }
 
-/// Computes the contributions of n particles.
+/// Computes the contributions of n particles that have moved for a time dt.
 template <bool affine, bool loaded, bool moments, bool pulled, int D>
-TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch) noexcept
+TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size_t n, Real dt, StripScratch<D>& scratch) noexcept
 {
   using Of = Contribution<D, affine, loaded, moments, pulled>;
   for (std::size_t i = 0; i < n; i += pack_size) {
@@ -53,15 +54,17 @@ TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size
       if constexpr (moments)
         q[Of::momentum + d] = m * v[d];
     }
-    if constexpr (affine)
+    if constexpr (affine) {
+      const MatOf<D> field = affine_field(columns, i, dt);
       for (int j = 0; j < D; ++j) {
         const Pack centre = load_loose(scratch.centre[j] + i);
         for (int d = 0; d < D; ++d) {
-          const Pack A = load_loose(columns.affine_field().component(j * D + d) + i);
+          const Pack A = field(d, j).of;
           v[d] -= A * centre;
           q[Of::field + j * D + d] = m * A;
         }
       }
+    }
     for (int d = 0; d < D; ++d)
       q[d] = m * v[d];
     q[Of::mass] = m;
@@ -190,12 +193,12 @@ void add_volume(const StripColumn<Real>& volume, const CellRun<D>& run, const St
 /// Adds the contributions of the first n particles, of a body, to the rows of their block, `with_volume` their volume too, to the moments of
 /// their cells and to the sums of its group; find_shares() has been called.
 template <bool affine, bool loaded, bool with_moments, bool pulled, int D, class Row>
-TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
+TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, Real dt, StripScratch<D>& scratch, Index block,
                                   BlockRows<D, Row>& blocks, SparseRows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces,
                                   bool with_volume) noexcept
 {
   using Of = Contribution<D, affine, loaded, with_moments, pulled>;
-  find_contributions<affine, loaded, with_moments, pulled>(columns, n, scratch);
+  find_contributions<affine, loaded, with_moments, pulled>(columns, n, dt, scratch);
   const std::span<Row> rows = blocks.rows(block);
   CornerSums<D, Of> sums;
   for (const CellRun<D>& run : scratch.runs) {
@@ -254,13 +257,13 @@ class VertexStrips {
     find_gradients(columns.places(), with_affine, columns);
     m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
   }
-  /// Adds the first n particles to the rows of the block.
-  void add(const StripColumns<D>& columns, std::size_t n, Index block)
+  /// Adds the first n particles, which have moved for a time dt, to the rows of the block.
+  void add(const StripColumns<D>& columns, std::size_t n, Real dt, Index block)
   {
     if (m_.problem.transfer.affine())
-      columns.applied ? add<true, true>(columns, n, block) : add<true, false>(columns, n, block);
+      columns.applied ? add<true, true>(columns, n, dt, block) : add<true, false>(columns, n, dt, block);
     else
-      columns.applied ? add<false, true>(columns, n, block) : add<false, false>(columns, n, block);
+      columns.applied ? add<false, true>(columns, n, dt, block) : add<false, false>(columns, n, dt, block);
   }
   /// Adds the virtual stress of the same particles.
   void add_surface_load(const SurfaceLoad<D>& load, const StripColumns<D>& columns, Index block,
@@ -271,15 +274,15 @@ class VertexStrips {
 
  private:
   template <bool affine, bool loaded>
-  void add(const StripColumns<D>& columns, std::size_t n, Index block)
+  void add(const StripColumns<D>& columns, std::size_t n, Real dt, Index block)
   {
-    m_.problem.transfer.uses_musl() ? add<affine, loaded, true>(columns, n, block) : add<affine, loaded, false>(columns, n, block);
+    m_.problem.transfer.uses_musl() ? add<affine, loaded, true>(columns, n, dt, block) : add<affine, loaded, false>(columns, n, dt, block);
   }
   template <bool affine, bool loaded, bool moments>
-  void add(const StripColumns<D>& columns, std::size_t n, Index block)
+  void add(const StripColumns<D>& columns, std::size_t n, Real dt, Index block)
   {
     const auto deposit = [&](auto pulled) {
-      deposit_strip<affine, loaded, moments, pulled>(columns, n, scratch_, block, of_->blocks, of_->moments, body_, of_->interfaces,
+      deposit_strip<affine, loaded, moments, pulled>(columns, n, dt, scratch_, block, of_->blocks, of_->moments, body_, of_->interfaces,
                                                      of_->extension.any());
     };
     columns.G ? deposit(std::true_type()) : deposit(std::false_type());
