@@ -120,12 +120,33 @@ void apply_local_damping(Model<D>& m)
       damp(m.state.stage.damping, field.nodes);
 }
 
-/// Moves nodes of small mass with their hosts; then the motion of all nodes is known.
+/// Moves nodes of small mass with their hosts.
 template <int D>
 void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 {
   for (VelocityField<D>& field : m.work.fields)
     field.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, field.nodes, m.work.sums.beyond_nodes);
+}
+
+/// Finds the pressure of flowing pore water at the end of the step, and what it does to velocities.
+template <int D>
+void find_pore_pressures(Model<D>& m, const Kick& kick, Real dt)
+{
+  State<D>& state = m.state;
+  if (!state.stage.flows)
+    return;
+  const Gravity<D>& gravity = m.problem.loads.gravity;
+  const Real end = state.clock.time + dt, full = gravity.acceleration.norm();
+  const Vec<D> weight = full > 0 ? Vec<D>(m.problem.flow.unit_weight / full * gravity(end, state.stage.ramp(end))) : Vec<D>(Vec<D>::Zero());
+  const FlowStep<D> step{.end = end, .dt = dt, .kick = kick.length(), .weight = weight};
+  m.work.flow->advance(m.problem.mesh, m.problem.flow, state.materials, *m.work.strips, m.problem.own, *m.problem.ranks, step,
+                       state.boundary, m.work.fields.front(), state.flow, m.work.sums.pore);
+}
+
+/// Tells particles and other ranks how nodes move.
+template <int D>
+void send_motion(Model<D>& m)
+{
   m.work.sheets.copy_to_field_behind(
       std::span(m.work.fields), [](Nodes<D> & nodes) -> auto& { return nodes.motion; });
   m.transfer->send_motion(m);
@@ -258,8 +279,8 @@ void update_balances(Model<D>& m)
   Workspace<D>& work = m.work;
   StepSums<D>& sums = work.sums;
   problem.ranks->sum(sums.digits, sums.removed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes, sums.balance,
-                     sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles, state.boundary.pushed(),
-                     std::span(sums.contacts), std::span(sums.rigid));
+                     sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.pore, sums.remap, sums.particles,
+                     state.boundary.pushed(), std::span(sums.contacts), std::span(sums.rigid));
   state.boundary.keep_impulses();
   for (std::size_t law = 0; law < state.contacts.size(); ++law)
     state.contacts[law] += sums.contacts[law].value();
@@ -318,6 +339,8 @@ void make_step(Model<D>& m, Real dt)
   apply_rigid_bodies(m, kick, dt);
   apply_local_damping(m);
   extrapolate_to_small_masses(m, kick);  //  8
+  find_pore_pressures(m, kick, dt);
+  send_motion(m);
   record_node_sums(m);
   watch.lap(state.timings.nodes);
   clear_particle_sums(m);

@@ -82,11 +82,15 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
                    .ramp_time = stage.ramp,
                    .ramp_shape = stage.ramp_shape,
                    .elastic = stage.elastic,
-                   .seeks_rest = stage.seeks_rest()};
+                   .seeks_rest = stage.seeks_rest(),
+                   .flows = m.problem.flow.any() && !stage.residual};
   m.state.boundary.begin_stage(stage.residual.has_value(), m.state.clock.time);
   // Under a stress of the start all of gravity acts, however it grows afterwards.
   const Real time = m.state.clock.time, ramp = stage.start_stress.empty() ? m.state.stage.ramp(time) : 1;
-  soak(m.problem.mesh, {m.problem.water, ramp * m.problem.loads.gravity.table(time)}, m.state.bodies, m.state.particles);
+  const auto follows_table = [&m](Index body) {
+    return m.problem.water.drains(body) && !(m.problem.flow.flows(body) && m.state.flow.begun);
+  };
+  soak(m.problem.mesh, {m.problem.water, ramp * m.problem.loads.gravity.table(time)}, m.state.bodies, follows_table, m.state.particles);
   if (!stage.start_stress.empty())
     set_start_stress(m.problem.mesh, m.problem.subdomain, *m.problem.ranks, m.problem.loads.gravity(time, ramp),
                      std::span(stage.start_stress), m.work.order, only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials,
@@ -148,6 +152,11 @@ std::optional<std::string> reason_to_stop(Model<D>& m, const StepLimits& limits)
             "the rigid body \"{}\" has left the mesh at ({:.6g}): make the mesh larger, put a boundary condition where it "
             "leaves, or let it go with on_exit: delete",
             m.problem.rigid.bodies[r].name, fmt::join(x.begin(), x.end(), ", "));
+  if (!(m.state.flow.residual <= FlowLedger::tolerance))
+    return fmt::format(
+        "the pore pressure of the last step was not found: {:.3g} of the right-hand side were left after {} iterations, asked {:.3g}; the "
+        "state has become unsound, or permeabilities differ too much",
+        m.state.flow.residual, m.state.flow.iterations, FlowLedger::tolerance);
   return exceeded_limit(m, Look::between_steps);
 }
 

@@ -164,6 +164,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     all.insert(all.end(), more.begin(), more.end());
   };
   add(run_columns(), "");
+  if (start.problem.flow.any())
+    add(flow_columns(), "");
   for (const BoundaryCondition<D>& wall : start.state.boundary.conditions())
     add(reaction_columns(), wall.name);
   for (const ContactLaw& contact : start.problem.contacts.laws)
@@ -212,6 +214,8 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
   const Vec<D> centre = sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(empty_entry));
   std::vector<Real> row;
   put_all<D>(run_columns(), RunNow<D>{view, sums, centre, accounts.energy(view)}, row);
+  if (view.problem.flow.any())
+    put_all<D>(flow_columns(), view.state.flow, row);
   const Real elapsed = view.state.clock.time - state_.time;
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
     const Vec<D>& impulse = view.state.boundary.conditions()[w].impulse;

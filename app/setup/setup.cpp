@@ -9,6 +9,7 @@
 #include "app/setup/boundaries_of_scene.hpp"
 #include "app/setup/checks/softening_cells.hpp"
 #include "app/setup/contacts_of_scene.hpp"
+#include "app/setup/flow_of_scene.hpp"
 #include "app/setup/loads_of_scene.hpp"
 #include "app/setup/references_of_scene.hpp"
 #include "app/setup/rigid_of_scene.hpp"
@@ -271,8 +272,9 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   warn_of_creeping_surfaces(scene, setup.stages, setup.warnings);
   setup.conditions.water = water_of(
       scene, mesh, setup.state.bodies, [&](Index cell) { return at_start(cell); }, errors, setup.warnings);
+  setup.conditions.flow = flow_of(scene, mesh, at_start, setup.state.bodies, errors, setup.warnings);
   saturate(scene, 0, mesh, setup.conditions.water, setup.state.bodies, setup.state.particles);
-  if (setup.conditions.water.any())
+  if (scene.water && scene.water->table)
     warn_if_dry(mesh, ranks, setup);
   check_laws(scene, errors);
   check_room(scene, mesh, setup, ranks, errors);
@@ -302,6 +304,7 @@ void restrict_to(const Subdomain& subdomain, Setup<D>& setup)
 {
   setup.state.boundary.restrict_to(subdomain);
   restrict_to(subdomain, setup.conditions.water);
+  restrict_to(subdomain, setup.conditions.flow);
   for (MeshTraction<D>& load : setup.conditions.loads.on_mesh)
     restrict_to(subdomain, load);
 }

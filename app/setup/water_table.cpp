@@ -168,7 +168,10 @@ Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>&
   water.unit_weight = spec.unit_weight, water.suction = spec.suction;
   for (const Body& body : bodies)
     water.drained.push_back(is_drained(spec, body.name) ? 1 : 0);
-  water.table = table_at_nodes(scene, spec.table, mesh, filled, errors, warnings);
+  if (spec.table)
+    water.table = table_at_nodes(scene, *spec.table, mesh, filled, errors, warnings);
+  else  // water that flows, and has no pressure at the start
+    water.table.assign(static_cast<std::size_t>(mesh.n_nodes()), mesh.low()[D - 1]);
   return water;
 }
 

@@ -79,7 +79,7 @@ void Mapping::close()
 {
   for (const auto& [key, place] : node_.keys)
     if (!any_key_ && std::find(known_.begin(), known_.end(), key) == known_.end()) {
-      const std::string_view removed = removed_choice(path_of(key)), reason = removed.empty() ? not_computed(key) : removed;
+      const std::string_view removed = removed_choice(path_of(key)), reason = removed.empty() ? advice_on_flow(key) : removed;
       problems_.add(place, path_,
                     reason.empty() ? fmt::format("unknown key \"{}\"{}", key, suggestion(key, known_))
                                    : fmt::format("unknown key \"{}\": {}", key, reason));

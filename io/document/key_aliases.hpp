@@ -24,8 +24,8 @@ constexpr std::string_view removed_choice(std::string_view choice) noexcept
   return "";
 }
 
-/// Advice for an unknown key that belongs to a process that Talus does not compute; empty for any other key.
-constexpr std::string_view not_computed(std::string_view key) noexcept
+/// Advice for an unknown key about the flow of water, which has a place of its own; empty for any other key.
+constexpr std::string_view advice_on_flow(std::string_view key) noexcept
 {
   constexpr std::array<std::string_view, 11> flow{"permeab",  "hydraulic",     "seepage",     "darcy",         "consolidation", "biot",
                                                   "porosity", "fluid_density", "water_bulk_", "storage_coeff", "infiltration"};
@@ -35,11 +35,8 @@ constexpr std::string_view not_computed(std::string_view key) noexcept
   };
   for (const std::string_view word : flow)
     if (has(word))
-      return "Talus computes one phase: water in the pores is a hydrostatic pressure below a table (block water) that does not flow, so "
-             "there is "
-             "no seepage and no consolidation; leave it out. For drained soil give water.table, of each stage where it changes; for soil "
-             "that "
-             "is loaded faster than it drains give undrained strengths (water.undrained)";
+      return "water that flows through pores is described in the block water: flow: {bodies: [{body, porosity, permeability}]}, with the "
+             "hydraulic conductivity in m/s as permeability; without flow water rests below a table";
   return "";
 }
 

@@ -72,6 +72,27 @@ constexpr auto cut_columns()
                        [](const auto& cut) { return cut.loss; })};
 }
 
+/// Columns of water that flows through pores.
+constexpr auto flow_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{
+      quantity<number>("water_inflow", "m^D", "volume of water that boundaries with a rate have let in",
+                       [](const auto& flow) { return flow.inflow; }),
+      quantity<number>("water_drained", "m^D", "volume that has left through the surface and boundaries with a pressure",
+                       [](const auto& flow) { return flow.drained; }),
+      quantity<number>("water_stored", "m^D", "volume by which the water in the pores was compressed",
+                       [](const auto& flow) { return flow.stored; }),
+      quantity<number>("pores_grown", "m^D", "growth of the volume of the pores", [](const auto& flow) { return flow.squeezed; }),
+      quantity<number>("water_defect", "m^D", "what the four terms leave unexplained", [](const auto& flow) { return flow.defect(); }),
+      quantity<number>("seepage", "J", "energy that the flow has dissipated, a part of strain",
+                       [](const auto& flow) { return flow.seepage; }),
+      quantity<number>("pressure_iterations", "-", "of the solver of the pore pressure in the last step",
+                       [](const auto& flow) { return flow.iterations; }),
+      quantity<number>("pressure_residual", "-", "of that solver, over its right-hand side",
+                       [](const auto& flow) { return flow.residual; })};
+}
+
 /// Columns of each rigid body.
 constexpr auto rigid_columns()
 {

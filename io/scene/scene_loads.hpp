@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/fields.hpp"
 #include "core/time_table.hpp"
+#include "io/scene/scene_flow.hpp"
 #include "io/scene/scene_surface.hpp"
 
 namespace talus {
@@ -79,16 +80,20 @@ struct TractionSpec {
 
 using LoadSpec = std::variant<GravitySpec, BodyForceSpec, TractionSpec>;
 
-/// Pore water at rest below a constant table.
+/// Pore water: at rest below a constant table, or flowing.
 struct WaterSpec {
-  SurfaceSpec table;
+  std::optional<SurfaceSpec> table;
+  std::optional<FlowSpec> flow;
   Real unit_weight = 9810, suction = 0;
   std::vector<std::string> bodies, undrained;
   SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
-        group("table", &WaterSpec::table, "the water table, where the pore pressure is zero; cut at the ground where it lies above"),
+        group("table", &WaterSpec::table,
+              "the water table, where the pore pressure is zero; cut at the ground where it lies above. With flow: at the start; default "
+              "none"),
+        group("flow", &WaterSpec::flow, "water that flows through pores, which are full of it; default water at rest"),
         optional("unit_weight", &WaterSpec::unit_weight, positive, "N/m^3", "pore pressure gained per metre below the table"),
         optional("suction", &WaterSpec::suction, non_negative, "Pa",
                  "largest suction above the table, up to which it grows as the pressure does below; 0 for none"),
@@ -101,6 +106,10 @@ struct WaterSpec {
   {
     if (!bodies.empty() && !undrained.empty())
       problems.emplace_back("give bodies, which are drained, or undrained, not both");
+    if (!table && !flow)
+      problems.emplace_back("missing key \"table\": the water table, where the pore pressure is zero");
+    if (flow && suction > 0)
+      problems.emplace_back("suction belongs to water at rest: where water flows all pores are full of it");
   }
 };
 

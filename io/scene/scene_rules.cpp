@@ -152,8 +152,32 @@ class Rules : private SceneRuleBase {
     };
     different_bodies("bodies", water.bodies);
     different_bodies("undrained", water.undrained);
-    if (std::none_of(scene_.loads.begin(), scene_.loads.end(), [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); }))
+    if (water.flow)
+      flow(water, *water.flow);
+    else if (std::none_of(scene_.loads.begin(), scene_.loads.end(),
+                          [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); }))
       add("water", "water has no weight without a load of type gravity");
+  }
+
+  void flow(const WaterSpec& water, const FlowSpec& flow)
+  {
+    const auto known = names(scene_.bodies);
+    for (std::size_t i = 0; i < flow.bodies.size(); ++i) {
+      const std::string path = fmt::format("water.flow.bodies[{}].body", i), &body = flow.bodies[i].body;
+      if (!known_word(path, "body", body, known))
+        continue;
+      if (std::ranges::count(flow.bodies.begin(), flow.bodies.begin() + static_cast<std::ptrdiff_t>(i), body, &PoresSpec::body) > 0)
+        add(path, fmt::format("\"{}\" has pores already", body));
+      if (!is_drained(water, body))
+        add(path, fmt::format("water cannot flow through \"{}\", whose law sees total stress (water.bodies, water.undrained)", body));
+    }
+    if (!scene_.contacts.empty())
+      add("contacts",
+          "bodies have one pressure of flowing water, and may not have velocities of their own: leave out contacts or water.flow");
+    if (!scene_.cuts.empty())
+      add("cuts", "flowing water does not know cuts: leave out cuts or water.flow");
+    if (std::ranges::any_of(scene_.rigid, &RigidSpec::is_sheet))
+      add("rigid", "flowing water does not know sheets: leave out the sheets or water.flow");
   }
 
   void contacts()

@@ -66,6 +66,8 @@ class StageRules : private SceneRuleBase {
       add(at + ".water",
           "there is no water in this scene: its block water says how heavy it is, which bodies are drained, and where its "
           "table is at the start");
+    else if (changes.water && scene_.water->flow)
+      add(at + ".water", "where water flows, its pressure follows from its boundaries: give water.flow.heads with a table in time");
     const bool any_left = std::ranges::any_of(bodies_, [&](const std::string& body) { return presence(body).in(s); });
     const bool any_before = s == 0 || std::ranges::any_of(bodies_, [&](const auto& body) { return presence(body).in(s - 1); });
     if (!bodies_.empty() && !any_left && any_before)

@@ -60,6 +60,19 @@ class BoundaryConditions {
   /// The kinematic part for one node.
   Vec<D> held(NodeOfField at, Real time, const Vec<D>& v) const;
 
+  /// The changes of a velocity that the conditions leave free at a node which moves with v after they have acted: a projection.  Nothing where
+  /// they prescribe all components, or friction holds the node at rest; else what is tangential to planes that hold it or that it presses on.
+  Mat<D> free_changes(NodeOfField at, const Vec<D>& v) const;
+  /// Adds an impulse [N s] that a condition of the node exerts on it to those of this step.
+  void react(Index node, const Vec<D>& impulse);
+  /// Calls f(node) for each node with conditions.
+  template <class F>
+  void for_each_node(F&& f) const
+  {
+    for (const NodeRule& rule : rules_)
+      f(rule.node);
+  }
+
   /// A plane of a wall with gaps.
   struct GapPlane {
     Index node;

@@ -8,31 +8,6 @@ SmallMassNodes<D>::SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, cons
 {}
 
 template <int D>
-template <class F>
-void SmallMassNodes<D>::for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const
-{
-  const auto visit = [&](Index n) {
-    if (const Real mass = weight_[static_cast<std::size_t>(n)]; mass > 0)
-      f(n, mass);
-  };
-  for (const Index n : mesh.ring_of_node()[node])
-    if (ring == 1)
-      visit(n);
-    else  // a node may be visited more than once, which increases its weight
-      std::ranges::for_each(mesh.ring_of_node()[n], visit);
-}
-
-template <int D>
-template <class F>
-void SmallMassNodes<D>::for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const
-{
-  const auto n = static_cast<std::size_t>(small_mass_node);
-  const Real total = -weight_[n];
-  if (total > 0)
-    for_each_active_around(mesh, small_mass_node, ring_[n], [&](Index host, Real mass) { f(host, mass / total); });
-}
-
-template <int D>
 void SmallMassNodes<D>::weigh_hosts(const Mesh<D>& mesh, Index small_mass_node)
 {
   const auto n = static_cast<std::size_t>(small_mass_node);
@@ -42,26 +17,6 @@ void SmallMassNodes<D>::weigh_hosts(const Mesh<D>& mesh, Index small_mass_node)
     for_each_active_around(mesh, small_mass_node, ring, [&](Index, Real mass) { total += mass; });
   }
   weight_[n] = -total;
-}
-
-template <int D>
-template <class What, class Rows>
-void SmallMassNodes<D>::send_to_hosts(Rows&& rows, const What& what)
-{
-  near_.send(
-      rows, what, [&](std::size_t border) { return small_here_[border] != 0; },
-      [&](std::size_t border) { return small_there_[border] != 0; });
-  near_.take(rows, what);
-}
-
-template <int D>
-template <class What, class Rows>
-void SmallMassNodes<D>::send_from_hosts(Rows&& rows, const What& what)
-{
-  near_.send(
-      rows, what, [&](std::size_t border) { return small_there_[border] != 0; },
-      [&](std::size_t border) { return small_here_[border] != 0; });
-  near_.take(rows, what);
 }
 
 template <int D>

@@ -38,6 +38,12 @@ class SmallMassNodes {
                    ExactSums<BoundaryWork>& work);
   /// Sets the velocity `v` only, without work.
   void extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid, Nodes<D>& nodes);
+  /// Adds allowed(n, vector) of each node of small mass n to the vectors of its hosts, in their shares.
+  template <class Allowed>
+  void give(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors);
+  /// Sets the vector of each node of small mass n to allowed(n, mean of its hosts): the transpose of give().
+  template <class Allowed>
+  void take(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors);
   Index size() const noexcept { return static_cast<Index>(small_.size()); }
 
  private:
@@ -70,6 +76,80 @@ class SmallMassNodes {
   HaloExchange near_;                   ///< between nodes within two rings of each other
   std::vector<std::uint8_t> small_here_, small_there_;  ///< by border: whether there are nodes of small mass on either side
 };
+
+template <int D>
+template <class F>
+void SmallMassNodes<D>::for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const
+{
+  const auto visit = [&](Index n) {
+    if (const Real mass = weight_[static_cast<std::size_t>(n)]; mass > 0)
+      f(n, mass);
+  };
+  for (const Index n : mesh.ring_of_node()[node])
+    if (ring == 1)
+      visit(n);
+    else  // a node may be visited more than once, which increases its weight
+      std::ranges::for_each(mesh.ring_of_node()[n], visit);
+}
+
+template <int D>
+template <class F>
+void SmallMassNodes<D>::for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const
+{
+  const auto n = static_cast<std::size_t>(small_mass_node);
+  const Real total = -weight_[n];
+  if (total > 0)
+    for_each_active_around(mesh, small_mass_node, ring_[n], [&](Index host, Real mass) { f(host, mass / total); });
+}
+
+template <int D>
+template <class What, class Rows>
+void SmallMassNodes<D>::send_to_hosts(Rows&& rows, const What& what)
+{
+  near_.send(
+      rows, what, [&](std::size_t border) { return small_here_[border] != 0; },
+      [&](std::size_t border) { return small_there_[border] != 0; });
+  near_.take(rows, what);
+}
+
+template <int D>
+template <class What, class Rows>
+void SmallMassNodes<D>::send_from_hosts(Rows&& rows, const What& what)
+{
+  near_.send(
+      rows, what, [&](std::size_t border) { return small_there_[border] != 0; },
+      [&](std::size_t border) { return small_here_[border] != 0; });
+  near_.take(rows, what);
+}
+
+template <int D>
+template <class Allowed>
+void SmallMassNodes<D>::give(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors)
+{
+  for (const SmallMassNode& one : small_)
+    if (own.has(one.node))
+      vectors[static_cast<std::size_t>(one.node)] = allowed(one.node, vectors[static_cast<std::size_t>(one.node)]);
+  send_to_hosts(vectors, OfMarked{itself, ring_});
+  for (const SmallMassNode& one : small_)
+    for_each_host(mesh, one.node, [&](Index host, Real share) {
+      if (own.has(host))
+        vectors[static_cast<std::size_t>(host)] += share * vectors[static_cast<std::size_t>(one.node)];
+    });
+}
+
+template <int D>
+template <class Allowed>
+void SmallMassNodes<D>::take(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors)
+{
+  send_from_hosts(vectors, OfMarked{itself, may_host_});
+  for (const SmallMassNode& one : small_) {
+    if (!own.has(one.node))
+      continue;
+    Vec<D> mean = Vec<D>::Zero();
+    for_each_host(mesh, one.node, [&](Index host, Real share) { mean += share * vectors[static_cast<std::size_t>(host)]; });
+    vectors[static_cast<std::size_t>(one.node)] = allowed(one.node, mean);
+  }
+}
 
 extern template class SmallMassNodes<2>;
 extern template class SmallMassNodes<3>;

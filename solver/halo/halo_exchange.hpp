@@ -32,7 +32,9 @@ enum class MessageTag : int {
   rigid_touches = 17,
   wall_nodes = 18,
   wall_touches = 19,
-  sheet_nodes = 20
+  sheet_nodes = 20,
+  flow_cells = 21,
+  flow_nodes = 22
 };
 
 /// Selects the parts of a row to be sent: the whole row.

@@ -42,19 +42,32 @@ struct PoreWater {
   {
     return share * std::max(water.unit_weight * depth_below_table(mesh, water, cell, x), -water.suction);
   }
+  /// Its gradient [Pa/m].
+  template <int D>
+  Vec<D> gradient(const Mesh<D>& mesh, Index cell, const Vec<D>& x) const noexcept
+  {
+    if (water.unit_weight * depth_below_table(mesh, water, cell, x) < -water.suction)
+      return Vec<D>::Zero();
+    Vec<D> slope = -Vec<D>::Unit(D - 1);
+    for (std::size_t a = 0; a <= D; ++a)
+      slope += water.table[static_cast<std::size_t>(mesh.cell(cell)[a])] * mesh.gradients(cell)[a];
+    return share * water.unit_weight * slope;
+  }
 };
 
-/// Sets the pore pressure of drained bodies at their present positions; the effective stress stays.  Directly after a step this changes
-/// nothing.
-template <int D>
-void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bodies, Particles<D>& particles)
+/// Sets the pore pressure at their present positions of the bodies that follow the table; the effective stress stays.  Directly after a step
+/// this changes nothing.
+template <int D, class FollowsTable>
+void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bodies, FollowsTable&& follows_table, Particles<D>& particles)
 {
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    if (now.water.drains(static_cast<Index>(b)))
+    if (follows_table(static_cast<Index>(b)))
       parallel_for(bodies[b].size(), [&](Index i) {
         const auto p = static_cast<std::size_t>(bodies[b].begin + i);
         const Real before = particles.pore[p];
         particles.pore.set(p, now.pressure(mesh, particles.cell[p], particles.x[p]));
+        if (!particles.pore_gradient.empty())
+          particles.pore_gradient.set(p, now.gradient(mesh, particles.cell[p], particles.x[p]));
         particles.stress.set(p, add_diagonal(particles.stress[p], before - particles.pore[p]));
       });
 }

@@ -42,6 +42,8 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
     particles.viscous.assign(n, 0);
   if (wanted.pore && particles.pore.empty())
     particles.pore.assign(n, 0);
+  if (wanted.flow && particles.pore_gradient.empty())
+    particles.pore_gradient.assign(n, Vec<D>::Zero());
   if (wanted.side && particles.side.empty())
     particles.side.assign(n, 0);
   if (wanted.reference && particles.reference.empty()) {
@@ -115,12 +117,15 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
                      .volume_ratio = any_material([](const Material& material) { return material.averages_volume; }),
                      .viscous = any_material([](const Material& material) { return material.viscosity.has_value(); }),
                      .pore = problem.water.any(),
+                     .flow = problem.flow.any(),
                      .side = problem.rigid.any_sheet(),
                      .reference = reference};
   fill_columns(problem.columns, state.particles);
   const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))
     alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.subdomain);
+  if (problem.flow.any())
+    alone ? work.flow.emplace(problem.mesh) : work.flow.emplace(*problem.ranks, problem.mesh, problem.subdomain, problem.own);
   while (work.fields.size() < problem.n_fields())
     m.add_field();
   transfer.prepare(problem);

@@ -8,6 +8,7 @@
 #include "mesh/part.hpp"
 #include "solver/contact/contacts.hpp"
 #include "solver/contact/cut_law.hpp"
+#include "solver/flow/flow.hpp"
 #include "solver/loads/loads.hpp"
 #include "solver/loads/water.hpp"
 #include "solver/options/limit_options.hpp"
@@ -26,6 +27,7 @@ struct WantedColumns {
   bool volume_ratio = false;  ///< a law averages its volume
   bool viscous = false;       ///< a law has bulk viscosity
   bool pore = false;          ///< there is pore water
+  bool flow = false;          ///< it flows
   bool side = false;          ///< there are sheets
   bool reference = false;     ///< a body has a reference configuration
 };
@@ -35,6 +37,7 @@ struct SceneConditions {
   TransferOptions transfer{.scheme = Scheme::flip};  ///< plain unless set-up says otherwise
   Loads<D> loads;
   Water water;
+  Flow flow;
   Exits exits;
   Contacts contacts;
   std::vector<CutLaw> cuts;  ///< by number of the cut of the mesh

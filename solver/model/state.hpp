@@ -12,6 +12,7 @@
 #include "core/time_table.hpp"
 #include "materials/interface/material.hpp"
 #include "solver/boundary/boundary_conditions.hpp"
+#include "solver/flow/flow.hpp"
 #include "solver/rigid/rigid_body.hpp"
 #include "solver/state/ledger.hpp"
 
@@ -41,6 +42,7 @@ struct StageState {
   RampShape ramp_shape = RampShape::linear;
   bool elastic = false;     ///< whether plastic flow is suspended
   bool seeks_rest = false;  ///< whether it ends in equilibrium, or is damped
+  bool flows = false;       ///< whether water flows through pores in it
   bool done = false;        ///< whether it has ended
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? ramp_at(ramp_shape, (time - begin) / ramp_time) : Real{1}; }
   static constexpr auto fields()
@@ -55,6 +57,7 @@ struct StageState {
                       saved("ramp_time", &StageState::ramp_time),
                       saved("elastic", &StageState::elastic),
                       saved("seeks_rest", &StageState::seeks_rest),
+                      saved("flows", &StageState::flows),
                       saved("done", &StageState::done),
                       saved("first_residual", &StageState::first_residual),
                       saved("ramp_shape", &StageState::ramp_shape)};
@@ -101,6 +104,7 @@ struct State {
   EnergyLedger energy;  ///< balance since the beginning of the stage
   MassLedger<D> mass;
   MomentumLedger<D> momentum;
+  FlowLedger flow;
   LimitMonitor monitor;
   Timings timings;
   Real residual = 0;  ///< unbalanced force of the nodes over the loads in the last step [-]
@@ -114,11 +118,12 @@ struct State {
 
   static constexpr auto parts()
   {
-    return std::tuple{saved("clock", &State::clock),     saved("stage", &State::stage),       saved("energy", &State::energy),
-                      saved("mass", &State::mass),       saved("momentum", &State::momentum), saved("watched", &State::monitor),
-                      saved("timings", &State::timings), saved("residual", &State::residual), saved("crossing", &State::crossing),
-                      saved("walls", &State::boundary),  saved("contacts", &State::contacts), saved("rigid", &State::rigid),
-                      saved("bodies", &State::bodies),   saved("laws", &State::materials),    saved("particles", &State::particles)};
+    return std::tuple{saved("clock", &State::clock),        saved("stage", &State::stage),       saved("energy", &State::energy),
+                      saved("mass", &State::mass),          saved("momentum", &State::momentum), saved("watched", &State::monitor),
+                      saved("flow", &State::flow),          saved("timings", &State::timings),   saved("residual", &State::residual),
+                      saved("crossing", &State::crossing),  saved("walls", &State::boundary),    saved("contacts", &State::contacts),
+                      saved("rigid", &State::rigid),        saved("bodies", &State::bodies),     saved("laws", &State::materials),
+                      saved("particles", &State::particles)};
   }
 };
 

@@ -9,6 +9,7 @@
 #include "solver/contact/contact_nodes.hpp"
 #include "solver/contact/cut_nodes.hpp"
 #include "solver/contact/wall_gaps.hpp"
+#include "solver/flow/pore_pressure.hpp"
 #include "solver/loads/loads.hpp"
 #include "solver/rigid/rigid_nodes.hpp"
 #include "solver/state/cell_order.hpp"
@@ -34,6 +35,7 @@ struct Workspace {
 
   std::vector<VelocityField<D>> fields;  ///< one, unless bodies are in contact or there are sheets
   ContactNodes<D> contact;               ///< nodes at which two fields touch
+  std::optional<PorePressure<D>> flow;   ///< if water flows through pores
   CutNodes<D> cuts;                      ///< nodes of cuts and their twins
   WallGaps<D> walls;                     ///< where material touches walls with gaps
   Sheets<D> sheets;                      ///< fields in front of and behind sheets

@@ -25,8 +25,8 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, side, reference,
-      since_reference;
+  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, pore_gradient, side,
+      reference, since_reference;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place.
@@ -68,6 +68,7 @@ class StripLayout {
                .averaged = at("volume_ratio") == none ? none : width_++,
                .viscous = at("viscous_pressure"),
                .pore = at("pore_pressure"),
+               .pore_gradient = at("pore_gradient"),
                .side = at("side"),
                .reference = at("reference"),
                .since_reference = at("since_reference")};
@@ -162,6 +163,7 @@ struct StripColumns {
   StripColumn<Mat3> F{};
   StripColumn<Sym3> stress{};
   StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{}, side{};
+  StripColumn<Vec<D>> pore_gradient{};           ///< of the pore pressure, where water flows [Pa/m]
   StripColumn<Vec<D>> applied{};                 ///< forces of loads at the present positions [N]
   StripColumn<Real> volume_ratio{}, averaged{};  ///< of averaged volumes: see StressStrip; `averaged` lasts for a step
   StripColumn<Vec<D>> reference{};               ///< where there are reference configurations, see reference.hpp [m]

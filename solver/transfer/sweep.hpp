@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "solver/transfer/direct_strips.hpp"
+#include "solver/transfer/pore_pressures.hpp"
 #include "solver/transfer/vertex_strips.hpp"
 
 namespace talus {
@@ -246,7 +247,7 @@ class BlockSweep {
       std::fill(scratch_.altitude + run.begin, scratch_.altitude + run.end + strip_padding - 1, run.frame->altitude);
     if (columns.G)
       shorten(columns, n, scratch_.altitude);
-    const StripColumn<Real> pore_after = find_pore_pressures(body, columns, dt);
+    const StripColumn<Real> pore_after = find_pore_pressures(m_, body, columns, dt, scratch_);
     columns.v.pad(n), columns.L.pad(n), columns.F.pad(n), columns.stress.pad(n);
     columns.mass.pad(n), columns.volume0.pad(n), columns.volume.pad(n);
     if (columns.viscous)
@@ -282,18 +283,6 @@ class BlockSweep {
     all.work += sums.work;
     all.take_extremes(sums);
     all.seconds += std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
-  }
-
-  /// Pore pressures at the new positions; nothing where the law of the body uses total stress.
-  StripColumn<Real> find_pore_pressures(Index body, const StripColumns<D>& columns, Real dt) noexcept
-  {
-    const auto water = pore_water(m_, body, m_.state.clock.time + dt);
-    if (!water)
-      return {};
-    for (const CellRun<D>& run : scratch_.runs)
-      for (std::size_t i = run.begin; i < run.end; ++i)
-        scratch_.pore_after[i] = water->pressure(m_.problem.mesh, run.frame->cell, columns.x.of(i));
-    return {scratch_.pore_after, 0};
   }
 
   /// Computes the forces of loads at a time, lists the particles that have left their cells or the side of a sheet, and sums the others.

@@ -198,6 +198,24 @@ inline std::vector<SceneCase> scenes_of_all()
                 "[{body: high, "
                 "stress: {xx: -8.0e3, yy: -1.0e4, zz: -8.0e3, xy: 500}}]}}\n"
                 "  - {type: run, duration: 0.02, water: {table: {points: [[0, 0.3], [2, 0.7]]}}}\n  - {type: run, duration: 0.02}\n"}});
+  const SceneParts flow{
+      .more =
+          "water: {table: {elevation: 0.7}, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3, kozeny_carman: true}, "
+          "{body: high, porosity: 0.3, permeability: 1.0e-5, bulk_modulus: 1.0e8, biot: 0.9}], drained: [x_min], heads: [{on: x_max, "
+          "level: 0.5, table: [[0, 1], [0.05, 1.4]]}], inflow: [{on: y_min, rate: 1.0e-4}]}}\n",
+      .law = soil_law,
+      .bodies =
+          "bodies:\n"
+          "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3}\n"
+          "  - {name: high, material: stuff, shape: {type: box, low: [1, 0], high: [2, 0.8]}, particles_per_cell: 3}\n",
+      .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
+      .time =
+          "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, residual: 5.0e-2}\n  - {type: run, duration: 0.05}\n"
+          "  - {type: geostatic, duration: 5, residual: 8.0e-2}\n  - {type: run, duration: 0.02}\n"};
+  all.push_back({"flow", flow});
+  SceneParts flow_umls = flow;
+  flow_umls.more = "kernel: umls\n" + flow.more;
+  all.push_back({"flow_umls", flow_umls});
   all.push_back(
       {"stages_that_change",
        {.law = soil_law + "}, {name: other, density: 2500, law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, "
@@ -354,6 +372,9 @@ inline std::vector<SceneCase> scenes_of_all()
   loaded_in_3d.loads =
       "loads: [{type: traction, on: \"low:x_max\", pressure: 2.0e3}, {type: traction, on: \"low:y_max\", traction: [1.0e3, 0, -500]}]\n";
   all.push_back({"surface_loads_solid", loaded_in_3d});
+  SceneParts flow_in_3d = in_3d;
+  flow_in_3d.more = "water: {flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3}], drained: [x_min]}}\n";
+  all.push_back({"flow_solid", flow_in_3d});
   in_3d.law = soil_law + ", softening_length: 0.3";
   all.push_back({"softening_length_solid", in_3d});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";

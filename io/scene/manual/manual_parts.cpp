@@ -142,6 +142,7 @@ class Manual {
       add_columns("Columns that are always there; in 2-D without those of the third axis, and with angular_momentum_z alone:",
                   run_columns(), "", part);
       add_columns("Columns of every wall:", reaction_columns(), "WALL", part);
+      add_columns("Columns where water flows:", flow_columns(), "", part);
       add_columns("Columns of every contact of bodies that are not tied:", contact_columns(), "FIRST_SECOND", part);
       add_columns("Columns of every cut:", cut_columns(), "GROUP", part);
       add_columns("Columns of each of the bodies:", body_columns(), "BODY", part);

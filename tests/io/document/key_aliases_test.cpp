@@ -99,12 +99,12 @@ TEST(KeyWords, TheManualKnowsBothWords)
   EXPECT_THAT(scene_schema(), HasSubstr("\"where\""));
 }
 
-TEST(KeyWords, OnlyKeysOfFlowAreSaidToBeNotComputed)
+TEST(KeyWords, OnlyKeysOfFlowGetAdviceOnFlow)
 {
   for (const std::string_view word : {"permeability", "hydraulic_conductivity", "seepage", "darcy_velocity", "intrinsic_permeability"})
-    EXPECT_THAT(std::string(not_computed(word)), HasSubstr("one phase")) << word;
+    EXPECT_THAT(std::string(advice_on_flow(word)), HasSubstr("block water")) << word;
   for (const std::string_view word : {"cohesion", "conductivity", "table", "suction", "preconsolidation"})
-    EXPECT_EQ(not_computed(word), "") << word;
+    EXPECT_EQ(advice_on_flow(word), "") << word;
 }
 
 }  // namespace

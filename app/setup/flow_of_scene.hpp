@@ -1,0 +1,15 @@
+#pragma once
+// The group `flow` of the block `water` of a scene -> how water flows through the pores of bodies.
+#include "app/setup/cell_occupancy.hpp"
+#include "app/setup/checks/scene_error_collector.hpp"
+#include "mesh/mesh.hpp"
+#include "solver/flow/flow.hpp"
+
+namespace talus {
+
+/// Complains of groups that the mesh does not have; warns of permeabilities in other units, and of water that nowhere can leave.
+template <int D>
+Flow flow_of(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& at_start, const std::vector<Body>& bodies,
+             SceneErrorCollector& errors, std::vector<std::string>& warnings);
+
+}  // namespace talus

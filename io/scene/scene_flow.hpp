@@ -1,0 +1,92 @@
+#pragma once
+// The group `flow` of the block `water`: how water flows through pores.
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/fields.hpp"
+#include "core/time_table.hpp"
+
+namespace talus {
+
+/// A permeability of water in soil and rock [m/s] that is less than this is hardly meant: intrinsic permeabilities [m^2] are.
+inline constexpr Real least_permeability = 1e-13;
+
+/// The pores of a body.
+struct PoresSpec {
+  std::string body;
+  Real porosity{}, permeability{}, bulk_modulus = 2.2e9, biot = 1;
+  bool kozeny_carman = false;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("body", &PoresSpec::body, any, "-", "name of a body, whose law then sees effective stress; the pores are full of water"),
+        required("porosity", &PoresSpec::porosity, between(0, 1), "-",
+                 "volume of pores over volume, at the start; it follows the deformation"),
+        required("permeability", &PoresSpec::permeability, positive, "m/s",
+                 "hydraulic conductivity k of Darcy's law: volume of water per area and time under a gradient of the head of 1"),
+        optional("bulk_modulus", &PoresSpec::bulk_modulus, positive, "Pa", "of the water; less where it contains air"),
+        optional("biot", &PoresSpec::biot, {.low = 0, .high = 1, .high_allowed = true}, "-",
+                 "Biot's coefficient: total stress is effective stress minus this share of the pore pressure"),
+        optional("kozeny_carman", &PoresSpec::kozeny_carman, any, "-",
+                 "the permeability changes with the porosity n as n^3 / (1 - n)^2; default constant")};
+  }
+};
+
+/// A facet group with open water behind it.
+struct HeadSpec {
+  std::string on;
+  Real level{};
+  Table table;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("on", &HeadSpec::on, any, "-",
+                               "facet group beside which there is water: the pore pressure is that of the depth below its level"),
+                      required("level", &HeadSpec::level, any, "m",
+                               "elevation of the surface of that water; its weight on the ground is a load of its own"),
+                      optional("table", &HeadSpec::table, any, "-", "factor of the level in time: list of [time, factor]")};
+  }
+};
+
+/// A facet group through which water flows in.
+struct InflowSpec {
+  std::string on;
+  Real rate{};
+  Table table;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("on", &InflowSpec::on, any, "-", "facet group through which water flows"),
+                      required("rate", &InflowSpec::rate, any, "m/s", "volume per area and time, positive into the bodies"),
+                      optional("table", &InflowSpec::table, any, "-", "factor in time: list of [time, factor]")};
+  }
+};
+
+enum class SurfaceFlow : std::uint8_t { drained, impermeable };
+constexpr std::array<std::string_view, 2> enum_names(SurfaceFlow) { return {"drained", "impermeable"}; }
+
+struct FlowSpec {
+  std::vector<PoresSpec> bodies;
+  std::vector<std::string> drained;
+  std::vector<HeadSpec> heads;
+  std::vector<InflowSpec> inflow;
+  SurfaceFlow surface = SurfaceFlow::drained;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required_list("bodies", &FlowSpec::bodies, "bodies through which water flows; all others are impermeable"),
+        optional("drained", &FlowSpec::drained, any, "-", "facet groups at which the pore pressure is zero; other walls are impermeable"),
+        optional_list("heads", &FlowSpec::heads, "facet groups with open water behind them"),
+        optional_list("inflow", &FlowSpec::inflow, "facet groups through which a given volume of water flows"),
+        optional_choice(
+            "surface", &FlowSpec::surface,
+            "of the bodies as they move, away from walls. drained: the pore pressure is zero there; impermeable: under a membrane")};
+  }
+};
+
+}  // namespace talus

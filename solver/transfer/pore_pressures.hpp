@@ -1,0 +1,34 @@
+#pragma once
+// The pore pressures of particles at the end of a step.
+#include "solver/model/model.hpp"
+#include "solver/transfer/strip_scratch.hpp"
+
+namespace talus {
+
+/// Pore pressures of the particles of a strip of a body after a step of length dt [s]; nothing where the law of the body uses total stress.
+/// Those of flowing water are where the particles were at the beginning of the step, as nodes move with them; in stages in which it does not
+/// flow they stay what they are, once it has.
+template <int D>
+StripColumn<Real> find_pore_pressures(const Model<D>& m, Index body, const StripColumns<D>& columns, Real dt,
+                                      StripScratch<D>& scratch) noexcept
+{
+  const auto water = pore_water(m, body, m.state.clock.time + dt);
+  if (!water)
+    return {};
+  const Mesh<D>& mesh = m.problem.mesh;
+  const bool flows = m.problem.flow.flows(body), moves = flows && m.state.stage.flows, stays = flows && m.state.flow.begun && !moves;
+  for (const CellRun<D>& run : scratch.runs) {
+    const Index cell = run.frame->cell;
+    const Vec<D> gradient = moves ? m.work.flow->gradient(mesh, cell) : Vec<D>(Vec<D>::Zero());
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      scratch.pore_after[i] = moves   ? m.work.flow->at(mesh, cell, columns.before.of(i))
+                              : stays ? columns.pore.of(i)
+                                      : water->pressure(mesh, cell, columns.x.of(i));
+      if (moves)
+        columns.pore_gradient.set(i, gradient);
+    }
+  }
+  return {scratch.pore_after, 0};
+}
+
+}  // namespace talus

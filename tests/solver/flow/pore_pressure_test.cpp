@@ -1,0 +1,240 @@
+// Water that flows through pores: closed forms of consolidation and seepage, what must be kept, and water that is nearly incompressible.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace talus::pore_pressure_test {
+namespace {
+
+using std::numbers::pi;
+using testing::add_body;
+using testing::close_off;
+using testing::rubber;
+using testing::unit_box;
+
+constexpr Real weight = 1e4;  // of water [N/m^3]
+
+/// A box of saturated soil.
+template <int D, class K = Projected<D>>
+Model<D> saturated(
+    Mesh<D> mesh, const FlowOfBody& pores, const std::function<bool(const Vec<D>&)>& inside,
+    const std::function<Vec<D>(const Vec<D>&)>& velocity = [](const Vec<D>&) { return Vec<D>(Vec<D>::Zero()); })
+{
+  auto m = make_model<K>(std::move(mesh));
+  add_body<D>(m, "soil", rubber(1e6, 0.2, 2000), D + 1, inside, velocity);
+  m.problem.water = {
+      .table = std::vector<Real>(static_cast<std::size_t>(m.problem.mesh.n_nodes()), -1), .drained = {1}, .unit_weight = weight};
+  m.problem.flow = {.bodies = {pores}, .heads = {}, .inflows = {}, .surface_drains = false, .unit_weight = weight};
+  return m;
+}
+template <int D>
+bool everywhere(const Vec<D>&)
+{
+  return true;
+}
+FlowOfBody pores(Real permeability, Real bulk_modulus)
+{
+  return {.flows = true, .porosity = 0.4, .permeability = permeability, .bulk_modulus = bulk_modulus};
+}
+template <int D>
+std::vector<Index> nodes_on(const Mesh<D>& mesh, const std::string& facets)
+{
+  std::vector<Index> nodes;
+  for (const Facet facet : *mesh.facet_set(facets))
+    for (const Index n : mesh.nodes_of(facet))
+      nodes.push_back(n);
+  std::ranges::sort(nodes);
+  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  return nodes;
+}
+/// Holds all nodes, so that only water moves.
+template <int D>
+void hold_everything(Model<D>& m)
+{
+  std::vector<Index> all(static_cast<std::size_t>(m.problem.mesh.n_nodes()));
+  std::iota(all.begin(), all.end(), 0);
+  m.state.boundary.add({.name = "all", .kind = Fixed<D>{}}, m.problem.mesh, all);
+}
+/// Makes the model ready, with this pressure and gradient of its water.
+template <int D>
+void begin(Model<D>& m, auto&& pressure, const Vec<D>& gradient)
+{
+  m.state.boundary.finalize();
+  make_ready(m);
+  m.state.stage.flows = true;
+  auto& particles = m.state.particles;
+  for (std::size_t p = 0; p < particles.id.size(); ++p) {
+    particles.pore.set(p, pressure(particles.x[p]));
+    particles.stress.set(p, add_diagonal(particles.stress[p], -particles.pore[p]));
+    particles.pore_gradient.set(p, gradient);
+  }
+}
+template <int D>
+void make_steps(Model<D>& m, int n, Real dt)
+{
+  for (int i = 0; i < n; ++i)
+    make_step(m, dt);
+  end_sweeps(m);
+  EXPECT_LE(m.state.flow.residual, FlowLedger::tolerance);
+}
+template <int D>
+Real rms(const Model<D>& m, auto&& exact)
+{
+  Real sum = 0;
+  const auto& particles = m.state.particles;
+  for (std::size_t p = 0; p < particles.id.size(); ++p)
+    sum += std::pow(particles.pore[p] - exact(particles.x[p]), 2);
+  return std::sqrt(sum / static_cast<Real>(particles.id.size()));
+}
+
+/// Water of a first mode that drains to one side of soil that cannot move.
+template <int D>
+Real error_of_draining(Index cells, Real jitter)
+{
+  const FlowOfBody soil = pores(1e-3, 1e6);
+  const Real diffusivity = soil.permeability / weight * soil.bulk_modulus / soil.porosity, end = 0.2 / diffusivity;
+  auto m = saturated<D>(unit_box<D>(cells, jitter), soil, everywhere<D>);
+  hold_everything(m);
+  m.problem.flow.heads.push_back({"x_min", nodes_on(m.problem.mesh, "x_min"), true, {}});
+  const auto mode = [&](Real t) {
+    return [=](const Vec<D>& x) { return 1000 * std::sin(pi / 2 * x[0]) * std::exp(-pi * pi / 4 * diffusivity * t); };
+  };
+  begin<D>(m, mode(0), Vec<D>::Zero());
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    m.state.particles.pore_gradient.set(p, 1000 * pi / 2 * std::cos(pi / 2 * m.state.particles.x[p][0]) * Vec<D>::Unit(0));
+  make_steps(m, 1000, end / 1000);
+  return rms(m, mode(end)) / 1000;
+}
+
+TEST(PorePressure, DrainsAsTheClosedFormSaysWithSecondOrder)
+{
+  for (const Real jitter : {0.0, 0.2}) {
+    const Real coarse = error_of_draining<2>(6, jitter), fine = error_of_draining<2>(12, jitter);
+    EXPECT_LT(fine, 2e-3) << jitter;
+    EXPECT_GT(std::log2(coarse / fine), 1.6) << jitter;
+  }
+  EXPECT_LT(error_of_draining<3>(4, 0.2), 0.02);
+}
+
+template <int D>
+void rests_below_its_level()
+{
+  auto m = saturated<D>(unit_box<D>(D == 2 ? 8 : 4, 0.2), pores(1e-2, 1e8), everywhere<D>);
+  hold_everything(m);
+  m.problem.loads.gravity = {-9.81 * Vec<D>::Unit(D - 1), {}};
+  m.problem.flow.heads.push_back({"x_min", nodes_on(m.problem.mesh, "x_min"), false, {{{0, 1.5}}}});
+  const auto at_rest = [](const Vec<D>& x) { return weight * (1.5 - x[D - 1]); };
+  begin<D>(m, at_rest, -weight * Vec<D>::Unit(D - 1));
+  make_steps(m, 20, 1e-3);
+  EXPECT_LT(rms(m, at_rest), 1e-8 * weight);
+  EXPECT_NEAR(m.state.flow.drained, 0, 1e-14);
+  EXPECT_NEAR(m.state.flow.seepage, 0, 1e-9);
+}
+
+TEST(PorePressure, OfWaterAtRestStays)
+{
+  rests_below_its_level<2>();
+  rests_below_its_level<3>();
+}
+
+TEST(PorePressure, FallsAlongTheFlowAsDarcySays)
+{
+  constexpr Real rate = 1e-4;
+  const FlowOfBody soil = pores(1e-3, 1e6);
+  auto m = saturated<2>(unit_box<2>(8, 0.2), soil, everywhere<2>);
+  hold_everything(m);
+  const auto in = nodes_on(m.problem.mesh, "x_max");
+  const auto shares = carried_by_mesh<2>(m.problem.mesh, *m.problem.mesh.facet_set("x_max"));
+  m.problem.flow.inflows.push_back({"x_max", shares.node, shares.measure, {{{0, rate}}}});
+  m.problem.flow.heads.push_back({"x_min", nodes_on(m.problem.mesh, "x_min"), true, {}});
+  begin<2>(
+      m, [](const Vec<2>&) { return 0; }, Vec<2>::Zero());
+  make_steps(m, 200, 1);
+  const Real slope = rate * weight / soil.permeability, before = m.state.flow.drained;
+  EXPECT_LT(rms(m, [&](const Vec<2>& x) { return slope * x[0]; }), 1e-6 * slope);
+  EXPECT_NEAR(m.state.flow.inflow, 200 * rate, 1e-12);
+  EXPECT_NEAR(m.state.flow.defect(), 0, 1e-8 * m.state.flow.inflow);
+  make_step(m, 1);
+  end_sweeps(m);
+  EXPECT_NEAR(m.state.flow.drained - before, rate, 1e-8 * rate);
+}
+
+/// One step of soil that is squeezed evenly: what its pores lose, the water in them takes up.
+template <int D, class K>
+void is_squeezed()
+{
+  constexpr Real rate = 0.1, dt = 1e-4, bulk_modulus = 1e5;
+  const auto velocity = [](const Vec<D>& x) { return Vec<D>(-rate * x[0] * Vec<D>::Unit(0)); };
+  auto m = saturated<D, K>(unit_box<D>(4, 0), pores(1e-3, bulk_modulus), everywhere<D>, velocity);
+  m.problem.transfer = {.scheme = Scheme::tpic, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  close_off<D>(m, "x_min", Roller<D>{});
+  close_off<D>(m, "x_max", PrescribedVelocity<D>{{Vec<D>(-rate * Vec<D>::Unit(0))}});
+  for (int d = 1; d < D; ++d)
+    for (const char* end : {"_min", "_max"})
+      close_off<D>(m, std::string(1, "xyz"[d]) + end, Roller<D>{});
+  begin<D>(
+      m, [](const Vec<D>&) { return 0; }, Vec<D>::Zero());
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    m.state.particles.L.set(p, -rate * Vec<D>::Unit(0) * Vec<D>::Unit(0).transpose());
+  make_step(m, dt);
+  end_sweeps(m);
+  EXPECT_LT(rms(m, [&](const Vec<D>&) { return bulk_modulus / 0.4 * rate * dt; }), 1e-7 * bulk_modulus * rate * dt);
+  EXPECT_NEAR(m.state.flow.squeezed, -rate * dt, 1e-9 * rate * dt);
+  EXPECT_NEAR(m.state.flow.defect(), 0, 1e-9 * rate * dt);
+}
+
+TEST(PorePressure, GrowsByWhatPoresLose)
+{
+  is_squeezed<2, Linear<2>>();
+  is_squeezed<2, Projected<2>>();
+  is_squeezed<3, Projected<3>>();
+}
+
+/// Waves in the water of this soil are a thousand times as fast as those that limit its steps.
+template <int D, class K>
+void swings_undrained(Real permeability, bool surface_drains)
+{
+  const Index cells = D == 2 ? 12 : 6;
+  const auto inside = [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.35; };
+  const auto velocity = [](const Vec<D>& x) { return Vec<D>(2 * (x[0] - 0.5) * Vec<D>::Unit(0) - 0.5 * (x[1] - 0.5) * Vec<D>::Unit(1)); };
+  auto m = saturated<D, K>(unit_box<D>(cells, 0.2), pores(permeability, 1e12), inside, velocity);
+  m.problem.flow.surface_drains = surface_drains;
+  begin<D>(
+      m, [](const Vec<D>&) { return 0; }, Vec<D>::Zero());
+  const Totals<D> before = totals(m);
+  const Real speed = std::sqrt(1.2e6 / 2000), dt = 0.3 / static_cast<Real>(cells) / speed;
+  make_steps(m, 200, dt);
+  const Totals<D> after = totals(m);
+  EXPECT_LT(after.kinetic, before.kinetic);
+  EXPECT_LT((after.momentum - before.momentum).norm(), 1e-10 * before.mass);
+  const FlowLedger& flow = m.state.flow;
+  EXPECT_NEAR(flow.defect(), 0, 1e-8 * (std::abs(flow.squeezed) + std::abs(flow.drained)) + 1e-12);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    ASSERT_NEAR(m.state.particles.F[p].determinant(), 1, surface_drains ? 0.2 : 0.1);
+}
+
+TEST(PorePressure, OfStiffWaterDoesNotLimitTheStep)
+{
+  for (const Real permeability : {1e-12, 1e-3, 1.0})
+    for (const bool surface_drains : {true, false}) {
+      swings_undrained<2, Projected<2>>(permeability, surface_drains);
+      swings_undrained<2, Umls<2>>(permeability, surface_drains);
+      swings_undrained<2, Linear<2>>(permeability, surface_drains);
+    }
+  swings_undrained<3, Projected<3>>(1e-4, true);
+}
+
+TEST(FlowOfBody, HasPoresThatFollowTheVolume)
+{
+  FlowOfBody soil = pores(1e-3, 1e9);
+  EXPECT_NEAR(soil.porosity_at(1.2), 0.5, 1e-15);
+  EXPECT_EQ(soil.permeability_at(0.5), 1e-3);
+  soil.follows_pores = true;
+  EXPECT_NEAR(soil.permeability_at(soil.porosity), 1e-3, 1e-18);
+  EXPECT_NEAR(soil.permeability_at(0.5), 1e-3 * (0.125 / 0.25) / (0.064 / 0.36), 1e-15);
+}
+
+}  // namespace
+}  // namespace talus::pore_pressure_test
