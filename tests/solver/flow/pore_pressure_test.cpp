@@ -42,7 +42,8 @@ template <int D>
 std::vector<Index> nodes_on(const Mesh<D>& mesh, const std::string& facets)
 {
   std::vector<Index> nodes;
-  for (const Facet facet : *mesh.facet_set(facets))
+  const std::vector<Facet> all = mesh.facet_set(facets).value();
+  for (const Facet facet : all)
     for (const Index n : mesh.nodes_of(facet))
       nodes.push_back(n);
   std::ranges::sort(nodes);
