@@ -139,8 +139,8 @@ void find_pore_pressures(Model<D>& m, const Kick& kick, Real dt)
   const Real end = state.clock.time + dt, full = gravity.acceleration.norm();
   const Vec<D> weight = full > 0 ? Vec<D>(m.problem.flow.unit_weight / full * gravity(end, state.stage.ramp(end))) : Vec<D>(Vec<D>::Zero());
   const FlowStep<D> step{.end = end, .dt = dt, .kick = kick.length(), .weight = weight};
-  m.work.flow->advance(m.problem.mesh, m.problem.flow, state.materials, *m.work.strips, m.problem.own, *m.problem.ranks, step,
-                       state.boundary, m.work.fields.front(), state.flow, m.work.sums.pore);
+  const FlowModel<D> model{m.problem.mesh, m.problem.flow, m.problem.own, *m.problem.ranks, state.boundary, m.work.fields.front()};
+  m.work.flow->advance(model, state.materials, *m.work.strips, step, state.flow, m.work.sums.pore);
 }
 
 /// Tells particles and other ranks how nodes move.

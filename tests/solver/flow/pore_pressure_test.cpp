@@ -105,18 +105,19 @@ Real error_of_draining(Index cells, Real jitter)
   begin<D>(m, mode(0), Vec<D>::Zero());
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
     m.state.particles.pore_gradient.set(p, 1000 * pi / 2 * std::cos(pi / 2 * m.state.particles.x[p][0]) * Vec<D>::Unit(0));
-  make_steps(m, 1000, end / 1000);
+  const int steps = D == 2 ? static_cast<int>(cells * cells) * 3 : 50;
+  make_steps(m, steps, end / steps);
   return rms(m, mode(end)) / 1000;
 }
 
 TEST(PorePressure, DrainsAsTheClosedFormSaysWithSecondOrder)
 {
   for (const Real jitter : {0.0, 0.2}) {
-    const Real coarse = error_of_draining<2>(6, jitter), fine = error_of_draining<2>(12, jitter);
-    EXPECT_LT(fine, 2e-3) << jitter;
+    const Real coarse = error_of_draining<2>(4, jitter), fine = error_of_draining<2>(8, jitter);
+    EXPECT_LT(fine, 5e-3) << jitter;
     EXPECT_GT(std::log2(coarse / fine), 1.6) << jitter;
   }
-  EXPECT_LT(error_of_draining<3>(4, 0.2), 0.02);
+  EXPECT_LT(error_of_draining<3>(3, 0.2), 0.03);
 }
 
 template <int D>
@@ -197,7 +198,7 @@ TEST(PorePressure, GrowsByWhatPoresLose)
 template <int D, class K>
 void swings_undrained(Real permeability, bool surface_drains)
 {
-  const Index cells = D == 2 ? 12 : 6;
+  const Index cells = D == 2 ? 8 : 5;
   const auto inside = [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.35; };
   const auto velocity = [](const Vec<D>& x) { return Vec<D>(2 * (x[0] - 0.5) * Vec<D>::Unit(0) - 0.5 * (x[1] - 0.5) * Vec<D>::Unit(1)); };
   auto m = saturated<D, K>(unit_box<D>(cells, 0.2), pores(permeability, 1e12), inside, velocity);
@@ -206,7 +207,7 @@ void swings_undrained(Real permeability, bool surface_drains)
       m, [](const Vec<D>&) { return 0; }, Vec<D>::Zero());
   const Totals<D> before = totals(m);
   const Real speed = std::sqrt(1.2e6 / 2000), dt = 0.3 / static_cast<Real>(cells) / speed;
-  make_steps(m, 200, dt);
+  make_steps(m, 80, dt);
   const Totals<D> after = totals(m);
   EXPECT_LT(after.kinetic, before.kinetic);
   EXPECT_LT((after.momentum - before.momentum).norm(), 1e-10 * before.mass);

@@ -1,0 +1,325 @@
+#include "solver/flow/flow_system.hpp"
+
+#include "solver/state/sums.hpp"
+
+namespace talus {
+
+namespace {
+
+/// Of the projection of pressures, over the compressibility of the skeleton for plane waves.
+constexpr Real projection = 2;
+constexpr int most_iterations = 2000;
+/// A node is at the surface of the bodies if these shares of the cells around, and of one of them, are not exceeded.
+constexpr Real full_around = 0.75, full_cell = 0.5;
+
+}  // namespace
+
+template <int D>
+FlowSystem<D>::FlowSystem(const Mesh<D>& mesh) : at_(to_size(mesh.n_nodes()), NodePressure::nothing), coarse_(mesh)
+{
+  const std::size_t n = at_.size(), entries = mesh.ring_of_node().item.size();
+  for (auto* all : {&change_, &right_, &given_, &weight_, &inflow_, &squeezed_, &residual_, &direction_, &image_, &conditioned_, &diagonal_,
+                    &lightness_})
+    all->resize(n);
+  free_.assign(n, Mat<D>::Identity());
+  force_.assign(n, Vec<D>::Zero()), velocity_.assign(n, Vec<D>::Zero());
+  matrix_.resize(entries), darcy_.resize(entries), push_.resize(entries), divergence_.resize(entries);
+}
+
+template <int D>
+FlowSystem<D>::FlowSystem(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own) : FlowSystem(mesh)
+{
+  std::vector<std::uint8_t> wanted = spread_by_rings(mesh, own.owned, 1);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    if (subdomain.owns_cell(c))
+      for (const Index n : mesh.cell(c))
+        wanted[to_size(n)] = 1;
+  copies_ = copies_of_nodes(ranks, subdomain, MessageTag::flow_nodes, wanted);
+  send(coarse_.take_numbers(subdomain));
+}
+
+template <int D>
+void FlowSystem<D>::find_rows(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step)
+{
+  constexpr Real n_corners = D + 1;
+  const Mesh<D>& mesh = m.mesh;
+  m.field.nodes.in_use.for_each([&](Index n) {
+    const auto ring = mesh.ring_of_node()[n];
+    const auto first = to_size(mesh.ring_of_node().begin[to_size(n)]);
+    for (std::size_t k = first; k < first + ring.size(); ++k)
+      matrix_[k] = darcy_[k] = 0, push_[k].setZero(), divergence_[k].setZero();
+    weight_[to_size(n)] = inflow_[to_size(n)] = 0;
+    at_[to_size(n)] = NodePressure::nothing;
+    if (!m.own.has(n))
+      return;
+    for (const Index c : mesh.cells_of_node()[n]) {
+      const FlowCell<D>& row = cells[c];
+      if (!row.flows())
+        continue;
+      at_[to_size(n)] = NodePressure::unknown;
+      const auto& corners = mesh.cell(c);
+      const auto& gradients = mesh.gradients(c);
+      const auto a = static_cast<std::size_t>(std::ranges::find(corners, n) - corners.begin());
+      for (std::size_t b = 0; b <= D; ++b) {
+        const std::size_t k = first + to_size(static_cast<Index>(std::ranges::lower_bound(ring, corners[b]) - ring.begin()));
+        const Real darcy = row.mobility * gradients[a].dot(gradients[b]);
+        const Real within = ((a == b ? 2 : 1) / (n_corners * (n_corners + 1)) - 1 / (n_corners * n_corners)) * projection * row.compliance;
+        darcy_[k] += darcy;
+        matrix_[k] += within + step.dt * darcy + (a == b ? row.storage / n_corners : 0);
+        push_[k] += row.biot / n_corners * gradients[a];
+        divergence_[k] += row.biot / n_corners * gradients[b];
+      }
+      weight_[to_size(n)] += step.dt * row.mobility * step.weight.dot(gradients[a]);
+    }
+  });
+}
+
+/// Which pressures are given, and what flows in.
+template <int D>
+void FlowSystem<D>::find_given_pressures(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step,
+                                         const std::vector<Real>& pressure)
+{
+  const Mesh<D>& mesh = m.mesh;
+  const auto give = [&](Index n, Real given) {
+    if (!sees_water(n))
+      return;
+    at_[to_size(n)] = NodePressure::given;
+    given_[to_size(n)] = given - pressure[to_size(n)];
+  };
+  if (m.flow.surface_drains)
+    m.field.nodes.in_use.for_each([&](Index n) {
+      if (!is_unknown(n))
+        return;
+      Real filled = 0, size = 0, least = 1;
+      for (const Index c : mesh.cells_of_node()[n]) {
+        filled += cells[c].filled, size += mesh.volume(c);
+        least = std::min(least, cells[c].filled / mesh.volume(c));
+      }
+      if (filled < full_around * size && least < full_cell)
+        give(n, 0);
+    });
+  const Real weight = step.weight.norm();
+  for (const HeadBoundary& head : m.flow.heads)
+    for (const Index n : head.nodes)
+      give(n, head.drained ? 0 : weight * std::max(head.level(step.end) - mesh.node(n)[D - 1], Real{0}));
+  for (const InflowBoundary& inflow : m.flow.inflows)
+    for (std::size_t k = 0; k < inflow.nodes.size(); ++k)
+      if (const Index n = inflow.nodes[k]; is_unknown(n))
+        inflow_[to_size(n)] += step.dt * inflow.rate(step.end) * inflow.area[k];
+}
+
+/// How velocities answer to forces.
+template <int D>
+void FlowSystem<D>::find_responses(const FlowModel<D>& m, const FlowStep<D>& step)
+{
+  const Nodes<D>& nodes = m.field.nodes;
+  nodes.in_use.for_each([&](Index n) {
+    lightness_[to_size(n)] = m.own.has(n) && nodes.active[to_size(n)] != 0 ? step.kick / nodes.sum[to_size(n)].mass : 0;
+  });
+  send(lightness_);
+  m.conditions.for_each_node(
+      [&](Index n) { free_[to_size(n)] = m.conditions.free_changes(nodes.of_field(n), nodes.motion[to_size(n)].v); });
+}
+
+template <int D>
+Vec<D> FlowSystem<D>::force_at(const Mesh<D>& mesh, Index n, const std::vector<Real>& x) const
+{
+  Vec<D> force = Vec<D>::Zero();
+  const Vec<D>* row = push_.data() + mesh.ring_of_node().begin[to_size(n)];
+  for (const Index u : mesh.ring_of_node()[n])
+    force += x[to_size(u)] * *row++;
+  return force;
+}
+
+template <int D>
+void FlowSystem<D>::push(const FlowModel<D>& m, std::vector<Real>& x)
+{
+  send(x);
+  const NodesInUse& in_use = m.field.nodes.in_use;
+  in_use.for_each([&](Index n) { force_[to_size(n)] = sees_water(n) ? force_at(m.mesh, n, x) : Vec<D>(Vec<D>::Zero()); });
+  m.field.small_mass_nodes.give(
+      m.mesh, m.own, [&](Index n, const Vec<D>& f) -> Vec<D> { return free_[to_size(n)] * f; }, force_);
+  in_use.for_each([&](Index n) {
+    velocity_[to_size(n)] =
+        m.own.has(n) ? Vec<D>(lightness_[to_size(n)] * (free_[to_size(n)] * force_[to_size(n)])) : Vec<D>(Vec<D>::Zero());
+  });
+  m.field.small_mass_nodes.take(
+      m.mesh, m.own, [&](Index n, const Vec<D>& v) -> Vec<D> { return free_[to_size(n)] * v; }, velocity_);
+  send(velocity_);
+}
+
+template <int D>
+void FlowSystem<D>::multiply(const FlowModel<D>& m, Real dt, std::vector<Real>& x)
+{
+  push(m, x);
+  m.field.nodes.in_use.for_each([&](Index u) {
+    Real sum = 0;
+    if (sees_water(u)) {
+      auto k = to_size(m.mesh.ring_of_node().begin[to_size(u)]);
+      for (const Index n : m.mesh.ring_of_node()[u]) {
+        sum += matrix_[k] * x[to_size(n)] + dt * divergence_[k].dot(velocity_[to_size(n)]);
+        ++k;
+      }
+    }
+    image_[to_size(u)] = sum;
+  });
+}
+
+template <int D>
+Real FlowSystem<D>::dot(const FlowModel<D>& m, const std::vector<Real>& x, const std::vector<Real>& y) const
+{
+  ExactSums<Real> sum;
+  add_ranges(m.field.nodes.in_use.own(), sum, [&](Index n) { return is_unknown(n) ? x[to_size(n)] * y[to_size(n)] : 0; });
+  m.ranks.sum(sum);
+  return sum.value();
+}
+
+/// Conjugate gradients [Hestenes & Stiefel 1952] from no change but the given ones on.
+template <int D>
+std::vector<Real>& FlowSystem<D>::solve(const FlowModel<D>& m, const FlowStep<D>& step, FlowLedger& ledger)
+{
+  const NodesInUse& in_use = m.field.nodes.in_use;
+  in_use.for_each([&](Index n) { change_[to_size(n)] = at_[to_size(n)] == NodePressure::given ? given_[to_size(n)] : 0; });
+  multiply(m, step.dt, change_);
+  in_use.for_each([&](Index n) { residual_[to_size(n)] = is_unknown(n) ? right_[to_size(n)] - image_[to_size(n)] : 0; });
+  const auto precondition = [&] {
+    in_use.for_each([&](Index n) { conditioned_[to_size(n)] = is_unknown(n) ? residual_[to_size(n)] / diagonal_[to_size(n)] : 0; });
+    coarse_.add(m.ranks, m.own, at_, residual_, conditioned_);
+    return dot(m, residual_, conditioned_);
+  };
+  Real now = precondition();
+  const Real begin = now, enough = 0.81 * FlowLedger::tolerance * FlowLedger::tolerance * begin;
+  in_use.for_each([&](Index n) { direction_[to_size(n)] = conditioned_[to_size(n)]; });
+  int iterations = 0;
+  for (; now > enough && iterations < most_iterations; ++iterations) {
+    multiply(m, step.dt, direction_);
+    const Real length = now / dot(m, direction_, image_);
+    in_use.for_each([&](Index n) {
+      if (!is_unknown(n))
+        return;
+      change_[to_size(n)] += length * direction_[to_size(n)];
+      residual_[to_size(n)] -= length * image_[to_size(n)];
+    });
+    const Real next = precondition(), share = next / now;
+    now = next;
+    in_use.for_each([&](Index n) { direction_[to_size(n)] = conditioned_[to_size(n)] + share * direction_[to_size(n)]; });
+  }
+  ledger.iterations = iterations, ledger.total_iterations += iterations;
+  ledger.residual = begin > 0 ? std::sqrt(now / begin) : begin;
+  return change_;
+}
+
+template <int D>
+void FlowSystem<D>::change_velocities(const FlowModel<D>& m, const FlowStep<D>& step, std::vector<Real>& change, ExactSums<Real>& work)
+{
+  push(m, change);
+  Nodes<D>& nodes = m.field.nodes;
+  nodes.in_use.for_each([&](Index n) {
+    if (!m.own.has(n))
+      return;
+    nodes.motion[to_size(n)].v += velocity_[to_size(n)];
+    nodes.motion[to_size(n)].change += velocity_[to_size(n)];
+    if (nodes.active[to_size(n)] != 0)
+      nodes.sum[to_size(n)].force += force_[to_size(n)];
+  });
+  m.conditions.for_each_node([&](Index n) {
+    if (sees_water(n)) {
+      const Vec<D> force = nodes.active[to_size(n)] != 0 ? force_[to_size(n)] : force_at(m.mesh, n, change);
+      m.conditions.react(n, step.kick * (free_[to_size(n)] * force - force));
+    }
+  });
+  add_ranges(nodes.in_use.own(), work, [&](Index n) {
+    const NodeMotion<D>& motion = nodes.motion[to_size(n)];
+    return nodes.active[to_size(n)] != 0 ? nodes.sum[to_size(n)].mass * velocity_[to_size(n)].dot(motion.v - 0.5 * motion.change) : 0;
+  });
+}
+
+namespace {
+
+/// Volumes of water [m^D] and energy [J] over a step.
+struct FlowSums {
+  Real inflow{}, drained{}, stored{}, squeezed{}, seepage{};
+  FlowSums& operator+=(const FlowSums& other) noexcept
+  {
+    inflow += other.inflow, drained += other.drained, stored += other.stored, squeezed += other.squeezed, seepage += other.seepage;
+    return *this;
+  }
+};
+
+}  // namespace
+
+template <int D>
+void FlowSystem<D>::record(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& change,
+                           const std::vector<Real>& pressure, FlowLedger& ledger) const
+{
+  ExactSums<FlowSums> sums;
+  add_ranges(m.field.nodes.in_use.own(), sums, [&](Index u) {
+    FlowSums one;
+    if (!sees_water(u))
+      return one;
+    Real lifted = 0;  // dt k/gamma w^2
+    for (const Index c : m.mesh.cells_of_node()[u])
+      lifted += step.dt * cells[c].mobility * step.weight.squaredNorm() / (D + 1);
+    auto k = to_size(m.mesh.ring_of_node().begin[to_size(u)]);
+    Real darcy = 0;
+    one.squeezed = squeezed_[to_size(u)];
+    for (const Index n : m.mesh.ring_of_node()[u]) {
+      one.stored += (matrix_[k] - step.dt * darcy_[k]) * change[to_size(n)];
+      one.squeezed += step.dt * divergence_[k].dot(velocity_[to_size(n)]);
+      darcy += step.dt * darcy_[k] * pressure[to_size(n)];
+      ++k;
+    }
+    one.inflow = inflow_[to_size(u)];
+    const Real needed = one.stored + one.squeezed + darcy - weight_[to_size(u)];  // to flow in at the node
+    one.drained = at_[to_size(u)] == NodePressure::given ? -needed : 0;
+    one.seepage = pressure[to_size(u)] * (darcy - 2 * weight_[to_size(u)]) + lifted;
+    return one;
+  });
+  m.ranks.sum(sums);
+  const FlowSums all = sums.value();
+  ledger.inflow += all.inflow, ledger.drained += all.drained, ledger.stored += all.stored;
+  ledger.squeezed += all.squeezed, ledger.seepage += all.seepage;
+}
+
+/// How much the velocities that the step has found squeeze the pores, and what is left to the changes of pressure.
+template <int D>
+void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowStep<D>& step, const std::vector<Real>& pressure)
+{
+  const NodesInUse& in_use = m.field.nodes.in_use;
+  in_use.for_each([&](Index n) { velocity_[to_size(n)] = m.own.has(n) ? m.field.nodes.motion[to_size(n)].v : Vec<D>(Vec<D>::Zero()); });
+  send(velocity_);
+  in_use.for_each([&](Index u) {
+    if (!sees_water(u))
+      return;
+    Real darcy = 0, diagonal = 0, squeezed = 0;
+    auto k = to_size(m.mesh.ring_of_node().begin[to_size(u)]);
+    for (const Index n : m.mesh.ring_of_node()[u]) {
+      squeezed += step.dt * divergence_[k].dot(velocity_[to_size(n)]);
+      darcy += step.dt * darcy_[k] * pressure[to_size(n)];
+      diagonal += step.dt * lightness_[to_size(n)] * divergence_[k].squaredNorm();
+      if (n == u)
+        diagonal += matrix_[k];
+      ++k;
+    }
+    squeezed_[to_size(u)] = squeezed;
+    right_[to_size(u)] = weight_[to_size(u)] + inflow_[to_size(u)] - squeezed - darcy;
+    diagonal_[to_size(u)] = diagonal;
+  });
+}
+
+template <int D>
+void FlowSystem<D>::prepare(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure)
+{
+  find_rows(m, cells, step);
+  find_given_pressures(m, cells, step, pressure);
+  find_responses(m, step);
+  find_right_side(m, step, pressure);
+  std::vector<NodePressure> around = at_;
+  send(around);
+  coarse_.prepare(m.ranks, m.mesh, m.own, around, matrix_, push_, free_, lightness_, step.dt);
+}
+
+template class FlowSystem<2>;
+template class FlowSystem<3>;
+
+}  // namespace talus
