@@ -111,7 +111,7 @@ function(talus_package_test)
     return()
   endif()
   add_test(NAME package.deb COMMAND ${TALUS_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/package/package_test.py ${CMAKE_CPACK_COMMAND} ${PROJECT_BINARY_DIR})
-  set_tests_properties(package.deb PROPERTIES LABELS package TIMEOUT 120 COST 100)
+  set_tests_properties(package.deb PROPERTIES LABELS "nightly;package" TIMEOUT 300 COST 100)
 endfunction()
 
 # The schema of scenes, as editors use it.

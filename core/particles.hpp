@@ -34,16 +34,17 @@ struct Particles {
   ParticleColumn<Real> volume0;  ///< volume at the start [m^D, unit thickness in 2-D]
   ParticleColumn<Real> volume;   ///< present volume, det F times volume0
 
-  ParticleColumn<Mat<D>> C;              ///< affine velocity field, where it differs from L [1/s]
-  ParticleColumn<Vec<D>> x0;             ///< position from which the displacement counts [m]
-  ParticleColumn<Vec<D>> applied;        ///< force of loads other than gravity [N]
-  ParticleColumn<Real> volume_ratio;     ///< bodies with averaged volumes: (averaged / own volume ratio)^(1/D)
-  ParticleColumn<Real> viscous;          ///< artificial viscous pressure, part of `stress` [Pa]
-  ParticleColumn<Real> pore;             ///< pore pressure, part of `stress`; 0 in bodies whose laws use total stress [Pa]
-  ParticleColumn<Vec<D>> pore_gradient;  ///< its gradient where water flows, see PorePressure [Pa/m]
-  ParticleColumn<Real> side;             ///< of the nearest sheet, see SideOfSheet [-]
-  ParticleColumn<Vec<D>> reference;      ///< position at which the kernel weighs, where that is not always x [m]
-  ParticleColumn<Mat<D>> G;              ///< deformation gradient since the particle was there
+  ParticleColumn<Mat<D>> C;               ///< affine velocity field, where it differs from L [1/s]
+  ParticleColumn<Vec<D>> x0;              ///< position from which the displacement counts [m]
+  ParticleColumn<Vec<D>> applied;         ///< force of loads other than gravity [N]
+  ParticleColumn<Real> volume_ratio;      ///< bodies with averaged volumes: (averaged / own volume ratio)^(1/D)
+  ParticleColumn<Real> viscous;           ///< artificial viscous pressure, part of `stress` [Pa]
+  ParticleColumn<Real> pore;              ///< pore pressure, part of `stress`; 0 in bodies whose laws use total stress [Pa]
+  ParticleColumn<Real> water;             ///< pressure of water that flows, of which `pore` is the part of `stress` [Pa]
+  ParticleColumn<Vec<D>> water_gradient;  ///< its gradient, see PorePressure [Pa/m]
+  ParticleColumn<Real> side;              ///< of the nearest sheet, see SideOfSheet [-]
+  ParticleColumn<Vec<D>> reference;       ///< position at which the kernel weighs, where that is not always x [m]
+  ParticleColumn<Mat<D>> G;               ///< deformation gradient since the particle was there
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
 
@@ -69,7 +70,7 @@ struct Particles {
     f("mass", "kg", self.mass), f("volume0", "m^D", self.volume0), f("volume", "m^D", self.volume);
     f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied);
     f("volume_ratio", "-", self.volume_ratio), f("viscous_pressure", "Pa", self.viscous), f("pore_pressure", "Pa", self.pore);
-    f("pore_gradient", "Pa/m", self.pore_gradient);
+    f("water_pressure", "Pa", self.water), f("water_gradient", "Pa/m", self.water_gradient);
     f("side", "-", self.side), f("reference", "m", self.reference), f("since_reference", "-", self.G);
   }
 };

@@ -66,7 +66,11 @@ Flow flow_of(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& at
                                                                     .permeability = pores.permeability,
                                                                     .bulk_modulus = pores.bulk_modulus,
                                                                     .biot = pores.biot,
+                                                                    .retention = {},
                                                                     .follows_pores = pores.kozeny_carman};
+    if (pores.retention)
+      flow.bodies[static_cast<std::size_t>(body - bodies.begin())].retention = {pores.retention->entry, pores.retention->exponent,
+                                                                                pores.retention->residual};
     if (pores.permeability < least_permeability)
       warnings.push_back(
           fmt::format("{}: a permeability of {:.3g} m/s is that of no soil or rock: if it is an intrinsic permeability in "

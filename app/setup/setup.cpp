@@ -172,6 +172,27 @@ void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
     setup.warnings.emplace_back("no particle of a drained body lies below the water table at the start");
 }
 
+/// Pores that stay full above the table pull with a suction that grows without bound, and make the soil too strong.  Every rank has to ask.
+template <int D>
+void warn_of_suction(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
+{
+  const SceneConditions<D>& conditions = setup.conditions;
+  if (conditions.loads.gravity.acceleration.isZero(0))
+    return;
+  for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {
+    const Body& body = setup.state.bodies[b];
+    const auto number = static_cast<Index>(b);
+    if (!conditions.flow.flows(number) || conditions.flow.bodies[b].retention.entry > 0)
+      continue;
+    const std::int64_t dry = ranks.sum(std::int64_t{body.size()} - count_wet(mesh, conditions.water, body, setup.state.particles));
+    if (dry > 0)
+      setup.warnings.push_back(fmt::format(
+          "{} particles of body \"{}\" lie above the water table at the start, and its pores stay full there: where water sinks, "
+          "suction grows without bound and makes the soil too strong, which is unsafe; give its pores a retention (water.flow)",
+          dry, body.name));
+  }
+}
+
 /// sqrt(h/g) [s], in which a body that falls from rest covers half of h, the median altitude of the cells in which bodies are placed, also
 /// those of later stages [m]; 0 without gravity [m/s^2].
 template <int D>
@@ -274,8 +295,10 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
       scene, mesh, setup.state.bodies, [&](Index cell) { return at_start(cell); }, errors, setup.warnings);
   setup.conditions.flow = flow_of(scene, mesh, at_start, setup.state.bodies, errors, setup.warnings);
   saturate(scene, 0, mesh, setup.conditions.water, setup.state.bodies, setup.state.particles);
-  if (scene.water && scene.water->table)
+  if (scene.water && scene.water->table) {
     warn_if_dry(mesh, ranks, setup);
+    warn_of_suction(mesh, ranks, setup);
+  }
   check_laws(scene, errors);
   check_room(scene, mesh, setup, ranks, errors);
   check_overlaps(scene, mesh, setup, ranks, errors);

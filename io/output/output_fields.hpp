@@ -24,7 +24,11 @@ constexpr auto particle_fields()
       quantity<number>("von_mises", "Pa", "von Mises stress",
                        [](const auto& state, auto p) { return von_mises(unpack(state.particles.stress[p])); }),
       quantity<number>("pore_pressure", "Pa", "pressure of water in the pores; 0 where there is none",
-                       [](const auto& state, auto p) { return state.particles.pore.empty() ? Real{0} : Real{state.particles.pore[p]}; }),
+                       [](const auto& state, auto p) {
+                         return !state.particles.water.empty() ? Real{state.particles.water[p]}
+                                : state.particles.pore.empty() ? Real{0}
+                                                               : Real{state.particles.pore[p]};
+                       }),
       quantity<symmetric>("effective_stress", "Pa", "stress plus pore pressure",
                           [](const auto& state, auto p) {
                             Sym3 stress = state.particles.stress[p];

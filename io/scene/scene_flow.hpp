@@ -14,16 +14,31 @@ namespace talus {
 /// A permeability of water in soil and rock [m/s] that is less than this is hardly meant: intrinsic permeabilities [m^2] are.
 inline constexpr Real least_permeability = 1e-13;
 
+/// Pores that drain under suction.
+struct RetentionSpec {
+  Real entry{}, exponent{}, residual = 0;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("entry", &RetentionSpec::entry, positive, "Pa", "suction at which pores begin to drain: 1/alpha of van Genuchten"),
+        required("exponent", &RetentionSpec::exponent, {.low = 1}, "-",
+                 "n of van Genuchten; the saturation is (1 + (s/entry)^n)^(1/n - 1)"),
+        optional("residual", &RetentionSpec::residual, from_to_below(0, 1), "-", "saturation that no suction removes")};
+  }
+};
+
 /// The pores of a body.
 struct PoresSpec {
   std::string body;
   Real porosity{}, permeability{}, bulk_modulus = 2.2e9, biot = 1;
   bool kozeny_carman = false;
+  std::optional<RetentionSpec> retention;
   SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
-        required("body", &PoresSpec::body, any, "-", "name of a body, whose law then sees effective stress; the pores are full of water"),
+        required("body", &PoresSpec::body, any, "-", "name of a body, whose law then sees effective stress"),
         required("porosity", &PoresSpec::porosity, between(0, 1), "-",
                  "volume of pores over volume, at the start; it follows the deformation"),
         required("permeability", &PoresSpec::permeability, positive, "m/s",
@@ -32,7 +47,8 @@ struct PoresSpec {
         optional("biot", &PoresSpec::biot, {.low = 0, .high = 1, .high_allowed = true}, "-",
                  "Biot's coefficient: total stress is effective stress minus this share of the pore pressure"),
         optional("kozeny_carman", &PoresSpec::kozeny_carman, any, "-",
-                 "the permeability changes with the porosity n as n^3 / (1 - n)^2; default constant")};
+                 "the permeability changes with the porosity n as n^3 / (1 - n)^2; default constant"),
+        group("retention", &PoresSpec::retention, "how pores drain where the pressure is below zero; default they stay full")};
   }
 };
 
@@ -82,7 +98,7 @@ struct FlowSpec {
         required_list("bodies", &FlowSpec::bodies, "bodies through which water flows; all others are impermeable"),
         optional("drained", &FlowSpec::drained, any, "-", "facet groups at which the pore pressure is zero; other walls are impermeable"),
         optional_list("heads", &FlowSpec::heads, "facet groups with open water behind them"),
-        optional_list("inflow", &FlowSpec::inflow, "facet groups through which a given volume of water flows"),
+        optional_list("inflow", &FlowSpec::inflow, "facet groups through which a given volume of water flows in, such as rain"),
         optional_choice(
             "surface", &FlowSpec::surface,
             "of the bodies as they move, away from walls. drained: the pore pressure is zero there; impermeable: under a membrane")};

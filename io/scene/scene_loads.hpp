@@ -93,7 +93,7 @@ struct WaterSpec {
         group("table", &WaterSpec::table,
               "the water table, where the pore pressure is zero; cut at the ground where it lies above. With flow: at the start; default "
               "none"),
-        group("flow", &WaterSpec::flow, "water that flows through pores, which are full of it; default water at rest"),
+        group("flow", &WaterSpec::flow, "water that flows through pores; default water at rest"),
         optional("unit_weight", &WaterSpec::unit_weight, positive, "N/m^3", "pore pressure gained per metre below the table"),
         optional("suction", &WaterSpec::suction, non_negative, "Pa",
                  "largest suction above the table, up to which it grows as the pressure does below; 0 for none"),
@@ -109,7 +109,7 @@ struct WaterSpec {
     if (!table && !flow)
       problems.emplace_back("missing key \"table\": the water table, where the pore pressure is zero");
     if (flow && suction > 0)
-      problems.emplace_back("suction belongs to water at rest: where water flows all pores are full of it");
+      problems.emplace_back("suction belongs to water at rest: where water flows, flow.bodies[].retention says what it does");
   }
 };
 

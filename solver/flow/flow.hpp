@@ -13,17 +13,49 @@
 
 namespace talus {
 
-/// The pores of a body, saturated with water.
+/// How much water pores hold under suction, and how well they conduct it [van Genuchten 1980, Mualem 1976].
+struct Retention {
+  Real entry{};       ///< suction at which they begin to drain [Pa]; 0: they stay full
+  Real exponent = 2;  ///< n of the curve [-]
+  Real residual{};    ///< saturation that no suction removes [-]
+
+  /// The effective saturation (1 + (s/entry)^n)^-m, m = 1 - 1/n, at a pressure [Pa].
+  Real effective(Real p) const noexcept
+  {
+    return entry > 0 && p < 0 ? std::pow(1 + std::pow(-p / entry, exponent), 1 / exponent - 1) : Real{1};
+  }
+  Real saturation(Real p) const noexcept { return residual + (1 - residual) * effective(p); }
+  /// dS/dp [1/Pa].
+  Real capacity(Real p) const noexcept
+  {
+    if (!(entry > 0 && p < 0))
+      return 0;
+    const Real ratio = std::pow(-p / entry, exponent), m = 1 - 1 / exponent;
+    return (1 - residual) * m * exponent * ratio / (-p) * std::pow(1 + ratio, -m - 1);
+  }
+  /// The permeability over that of full pores.
+  Real conductance(Real p) const noexcept
+  {
+    constexpr Real least = 1e-6;  // keeps the system of equations regular
+    const Real e = effective(p), m = 1 - 1 / exponent, root = 1 - std::pow(1 - std::pow(e, 1 / m), m);
+    return e < 1 ? std::max(std::sqrt(e) * root * root, least) : Real{1};
+  }
+};
+
+/// The pores of a body.
 struct FlowOfBody {
   bool flows = false;
-  Real porosity{};             ///< volume of pores over volume, at the start [-]
-  Real permeability{};         ///< hydraulic conductivity at that porosity [m/s]
-  Real bulk_modulus{};         ///< of the water [Pa]
-  Real biot = 1;               ///< share of the pore pressure that the skeleton does not feel [-]
+  Real porosity{};      ///< volume of pores over volume, at the start [-]
+  Real permeability{};  ///< hydraulic conductivity at that porosity [m/s]
+  Real bulk_modulus{};  ///< of the water [Pa]
+  Real biot = 1;        ///< share of the pore pressure that the skeleton does not feel [-]
+  Retention retention;
   bool follows_pores = false;  ///< whether the permeability changes with the porosity [Kozeny 1927, Carman 1937]
 
   /// The porosity after the volume of the body has changed to `ratio` times what it was; the grains keep theirs.
   Real porosity_at(Real ratio) const noexcept { return std::clamp(1 - (1 - porosity) / ratio, Real{1e-3}, Real{0.999}); }
+  /// The part of total stress that a pressure of the water makes [Pa]: Biot's coefficient and, as Bishop's, the saturation times the pressure.
+  Real stress_of(Real p) const noexcept { return biot * retention.saturation(p) * p; }
   /// k = k_0 n^3 / (1 - n)^2 over the same of n_0 [m/s].
   Real permeability_at(Real n) const noexcept
   {
@@ -55,6 +87,10 @@ struct Flow {
   Real unit_weight{};          ///< of water [N/m^3]
 
   bool any() const noexcept { return !bodies.empty(); }
+  bool any_retention() const noexcept
+  {
+    return std::ranges::any_of(bodies, [](const FlowOfBody& one) { return one.flows && one.retention.entry > 0; });
+  }
   bool flows(Index body) const noexcept { return any() && bodies[static_cast<std::size_t>(body)].flows; }
 };
 

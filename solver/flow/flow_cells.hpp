@@ -12,7 +12,7 @@ template <int D>
 struct FlowCell {
   Real filled{};                       ///< volume of all particles, also those through which no water flows [m^D]
   Real volume{};                       ///< of those through which it does [m^D]
-  Real biot{};                         ///< volume times Biot's coefficient [m^D]
+  Real biot{};                         ///< volume times Biot's coefficient and the saturation [m^D]
   Real storage{};                      ///< volume of water that a pressure stores [m^D/Pa]
   Real mobility{};                     ///< volume times permeability over the weight of water [m^(D+4)/(N s)]
   Real compliance{};                   ///< volume over the stiffness of the skeleton [m^D/Pa]
@@ -76,15 +76,16 @@ class FlowCells {
           const Real volume = run.columns.volume.of(p), n = pores.porosity_at(volume / run.columns.volume0.of(p));
           row.filled += volume;
           row.volume += volume;
-          row.biot += volume * pores.biot;
-          row.storage += volume * n / pores.bulk_modulus;
-          row.mobility += volume * pores.permeability_at(n) / flow.unit_weight;
+          const Real p_p = run.columns.water.of(p), full = pores.retention.saturation(p_p);
+          row.biot += volume * pores.biot * full;
+          row.storage += volume * n * (full / pores.bulk_modulus + pores.retention.capacity(p_p));
+          row.mobility += volume * pores.permeability_at(n) * pores.retention.conductance(p_p) / flow.unit_weight;
           row.compliance += volume * volume / (run.columns.mass.of(p) * speed * speed);
-          const Vec<D> slope = run.columns.pore_gradient.of(p), x = run.columns.x.of(p);
+          const Vec<D> slope = run.columns.water_gradient.of(p), x = run.columns.x.of(p);
           for (std::size_t a = 0; a <= D; ++a) {
             const Real share = volume * shape[static_cast<int>(a)];
             row.weight[a] += share;
-            row.pressure[a] += share * (run.columns.pore.of(p) + slope.dot(mesh.node(mesh.cell(c)[a]) - x));
+            row.pressure[a] += share * (p_p + slope.dot(mesh.node(mesh.cell(c)[a]) - x));
           }
         });
       });

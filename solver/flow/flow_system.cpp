@@ -80,11 +80,17 @@ void FlowSystem<D>::find_given_pressures(const FlowModel<D>& m, const FlowCells<
                                          const std::vector<Real>& pressure)
 {
   const Mesh<D>& mesh = m.mesh;
+  const bool retains = m.flow.any_retention();
   const auto give = [&](Index n, Real given) {
     if (!sees_water(n))
       return;
     at_[to_size(n)] = NodePressure::given;
     given_[to_size(n)] = given - pressure[to_size(n)];
+  };
+  // Where pores may hold less water, a surface lets water out and none in: it drains where the pressure is not below zero and water comes.
+  const auto drain = [&](Index n) {
+    if (!retains || (pressure[to_size(n)] >= 0 && right_[to_size(n)] >= 0))
+      give(n, 0);
   };
   if (m.flow.surface_drains)
     m.field.nodes.in_use.for_each([&](Index n) {
@@ -96,16 +102,15 @@ void FlowSystem<D>::find_given_pressures(const FlowModel<D>& m, const FlowCells<
         least = std::min(least, cells[c].filled / mesh.volume(c));
       }
       if (filled < full_around * size && least < full_cell)
-        give(n, 0);
+        drain(n);
     });
   const Real weight = step.weight.norm();
   for (const HeadBoundary& head : m.flow.heads)
     for (const Index n : head.nodes)
-      give(n, head.drained ? 0 : weight * std::max(head.level(step.end) - mesh.node(n)[D - 1], Real{0}));
-  for (const InflowBoundary& inflow : m.flow.inflows)
-    for (std::size_t k = 0; k < inflow.nodes.size(); ++k)
-      if (const Index n = inflow.nodes[k]; is_unknown(n))
-        inflow_[to_size(n)] += step.dt * inflow.rate(step.end) * inflow.area[k];
+      if (const Real depth = head.drained ? 0 : head.level(step.end) - mesh.node(n)[D - 1]; depth > 0)
+        give(n, weight * depth);
+      else
+        drain(n);
 }
 
 /// How velocities answer to forces.
@@ -269,7 +274,7 @@ void FlowSystem<D>::record(const FlowModel<D>& m, const FlowCells<D>& cells, con
       darcy += step.dt * darcy_[k] * pressure[to_size(n)];
       ++k;
     }
-    one.inflow = inflow_[to_size(u)];
+    one.inflow = at_[to_size(u)] == NodePressure::given ? 0 : inflow_[to_size(u)];
     const Real needed = one.stored + one.squeezed + darcy - weight_[to_size(u)];  // to flow in at the node
     one.drained = at_[to_size(u)] == NodePressure::given ? -needed : 0;
     one.seepage = pressure[to_size(u)] * (darcy - 2 * weight_[to_size(u)]) + lifted;
@@ -288,6 +293,10 @@ void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowStep<D>& st
   const NodesInUse& in_use = m.field.nodes.in_use;
   in_use.for_each([&](Index n) { velocity_[to_size(n)] = m.own.has(n) ? m.field.nodes.motion[to_size(n)].v : Vec<D>(Vec<D>::Zero()); });
   send(velocity_);
+  for (const InflowBoundary& inflow : m.flow.inflows)
+    for (std::size_t k = 0; k < inflow.nodes.size(); ++k)
+      if (const Index n = inflow.nodes[k]; sees_water(n))
+        inflow_[to_size(n)] += step.dt * inflow.rate(step.end) * inflow.area[k];
   in_use.for_each([&](Index u) {
     if (!sees_water(u))
       return;
@@ -311,9 +320,9 @@ template <int D>
 void FlowSystem<D>::prepare(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure)
 {
   find_rows(m, cells, step);
-  find_given_pressures(m, cells, step, pressure);
   find_responses(m, step);
   find_right_side(m, step, pressure);
+  find_given_pressures(m, cells, step, pressure);
   std::vector<NodePressure> around = at_;
   send(around);
   coarse_.prepare(m.ranks, m.mesh, m.own, around, matrix_, push_, free_, lightness_, step.dt);

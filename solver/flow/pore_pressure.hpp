@@ -35,6 +35,8 @@ class PorePressure {
   explicit PorePressure(const Mesh<D>& mesh);
   /// Of one of several ranks.  Collective.
   PorePressure(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own);
+  PorePressure(PorePressure&&) noexcept;
+  PorePressure& operator=(PorePressure&&) noexcept;
   ~PorePressure();
 
   /// Finds the pressures at the end of a step from those of the particles, and changes the velocities of the nodes accordingly; adds the

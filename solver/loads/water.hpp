@@ -66,8 +66,10 @@ void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bo
         const auto p = static_cast<std::size_t>(bodies[b].begin + i);
         const Real before = particles.pore[p];
         particles.pore.set(p, now.pressure(mesh, particles.cell[p], particles.x[p]));
-        if (!particles.pore_gradient.empty())
-          particles.pore_gradient.set(p, now.gradient(mesh, particles.cell[p], particles.x[p]));
+        if (!particles.water.empty()) {
+          particles.water.set(p, particles.pore[p]);
+          particles.water_gradient.set(p, now.gradient(mesh, particles.cell[p], particles.x[p]));
+        }
         particles.stress.set(p, add_diagonal(particles.stress[p], before - particles.pore[p]));
       });
 }

@@ -42,8 +42,10 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
     particles.viscous.assign(n, 0);
   if (wanted.pore && particles.pore.empty())
     particles.pore.assign(n, 0);
-  if (wanted.flow && particles.pore_gradient.empty())
-    particles.pore_gradient.assign(n, Vec<D>::Zero());
+  if (wanted.flow && particles.water.empty()) {
+    particles.water = particles.pore;
+    particles.water_gradient.assign(n, Vec<D>::Zero());
+  }
   if (wanted.side && particles.side.empty())
     particles.side.assign(n, 0);
   if (wanted.reference && particles.reference.empty()) {

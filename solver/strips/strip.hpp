@@ -25,7 +25,7 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, pore_gradient, side,
+  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, water, water_gradient, side,
       reference, since_reference;
 };
 
@@ -68,7 +68,8 @@ class StripLayout {
                .averaged = at("volume_ratio") == none ? none : width_++,
                .viscous = at("viscous_pressure"),
                .pore = at("pore_pressure"),
-               .pore_gradient = at("pore_gradient"),
+               .water = at("water_pressure"),
+               .water_gradient = at("water_gradient"),
                .side = at("side"),
                .reference = at("reference"),
                .since_reference = at("since_reference")};
@@ -162,8 +163,8 @@ struct StripColumns {
   StripColumn<Mat<D>> L{}, C{};  ///< in the strip only where gradients are kept; C is empty where the affine field is L
   StripColumn<Mat3> F{};
   StripColumn<Sym3> stress{};
-  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{}, side{};
-  StripColumn<Vec<D>> pore_gradient{};           ///< of the pore pressure, where water flows [Pa/m]
+  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{}, water{}, side{};
+  StripColumn<Vec<D>> water_gradient{};          ///< of the pressure of water that flows [Pa/m]
   StripColumn<Vec<D>> applied{};                 ///< forces of loads at the present positions [N]
   StripColumn<Real> volume_ratio{}, averaged{};  ///< of averaged volumes: see StressStrip; `averaged` lasts for a step
   StripColumn<Vec<D>> reference{};               ///< where there are reference configurations, see reference.hpp [m]

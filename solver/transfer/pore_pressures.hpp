@@ -21,11 +21,18 @@ StripColumn<Real> find_pore_pressures(const Model<D>& m, Index body, const Strip
     const Index cell = run.frame->cell;
     const Vec<D> gradient = moves ? m.work.flow->gradient(mesh, cell) : Vec<D>(Vec<D>::Zero());
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      scratch.pore_after[i] = moves   ? m.work.flow->at(mesh, cell, columns.before.of(i))
-                              : stays ? columns.pore.of(i)
-                                      : water->pressure(mesh, cell, columns.x.of(i));
-      if (moves)
-        columns.pore_gradient.set(i, gradient);
+      Real& after = scratch.pore_after[i];
+      if (moves) {
+        const Real p = m.work.flow->at(mesh, cell, columns.before.of(i));
+        columns.water.set(i, p), columns.water_gradient.set(i, gradient);
+        after = m.problem.flow.bodies[to_size(body)].stress_of(p);
+      } else if (stays) {
+        after = columns.pore.of(i);
+      } else {
+        after = water->pressure(mesh, cell, columns.x.of(i));
+        if (flows)
+          columns.water.set(i, after), columns.water_gradient.set(i, water->gradient(mesh, cell, columns.x.of(i)));
+      }
     }
   }
   return {scratch.pore_after, 0};

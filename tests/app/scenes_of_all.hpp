@@ -201,7 +201,8 @@ inline std::vector<SceneCase> scenes_of_all()
   const SceneParts flow{
       .more =
           "water: {table: {elevation: 0.7}, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3, kozeny_carman: true}, "
-          "{body: high, porosity: 0.3, permeability: 1.0e-5, bulk_modulus: 1.0e8, biot: 0.9}], drained: [x_min], heads: [{on: x_max, "
+          "{body: high, porosity: 0.3, permeability: 1.0e-5, bulk_modulus: 1.0e8, biot: 0.9, "
+          "retention: {entry: 2.0e3, exponent: 2, residual: 0.1}}], drained: [x_min], heads: [{on: x_max, "
           "level: 0.5, table: [[0, 1], [0.05, 1.4]]}], inflow: [{on: y_min, rate: 1.0e-4}]}}\n",
       .law = soil_law,
       .bodies =

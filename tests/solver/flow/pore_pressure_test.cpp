@@ -67,9 +67,9 @@ void begin(Model<D>& m, auto&& pressure, const Vec<D>& gradient)
   m.state.stage.flows = true;
   auto& particles = m.state.particles;
   for (std::size_t p = 0; p < particles.id.size(); ++p) {
-    particles.pore.set(p, pressure(particles.x[p]));
+    particles.pore.set(p, pressure(particles.x[p])), particles.water.set(p, particles.pore[p]);
     particles.stress.set(p, add_diagonal(particles.stress[p], -particles.pore[p]));
-    particles.pore_gradient.set(p, gradient);
+    particles.water_gradient.set(p, gradient);
   }
 }
 template <int D>
@@ -86,7 +86,7 @@ Real rms(const Model<D>& m, auto&& exact)
   Real sum = 0;
   const auto& particles = m.state.particles;
   for (std::size_t p = 0; p < particles.id.size(); ++p)
-    sum += std::pow(particles.pore[p] - exact(particles.x[p]), 2);
+    sum += std::pow(particles.water[p] - exact(particles.x[p]), 2);
   return std::sqrt(sum / static_cast<Real>(particles.id.size()));
 }
 
@@ -104,7 +104,7 @@ Real error_of_draining(Index cells, Real jitter)
   };
   begin<D>(m, mode(0), Vec<D>::Zero());
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
-    m.state.particles.pore_gradient.set(p, 1000 * pi / 2 * std::cos(pi / 2 * m.state.particles.x[p][0]) * Vec<D>::Unit(0));
+    m.state.particles.water_gradient.set(p, 1000 * pi / 2 * std::cos(pi / 2 * m.state.particles.x[p][0]) * Vec<D>::Unit(0));
   const int steps = D == 2 ? static_cast<int>(cells * cells) * 3 : 50;
   make_steps(m, steps, end / steps);
   return rms(m, mode(end)) / 1000;
@@ -161,6 +161,66 @@ TEST(PorePressure, FallsAlongTheFlowAsDarcySays)
   make_step(m, 1);
   end_sweeps(m);
   EXPECT_NEAR(m.state.flow.drained - before, rate, 1e-8 * rate);
+}
+
+TEST(PorePressure, OfRainThatSinksMakesPoresConductWhatFalls)
+{
+  constexpr Real rate = 2e-4;
+  FlowOfBody soil = pores(1e-3, 1e8);
+  soil.retention = {.entry = 2e3, .exponent = 2, .residual = 0.1};
+  auto m = saturated<2>(unit_box<2>(8, 0.2), soil, everywhere<2>);
+  hold_everything(m);
+  m.problem.loads.gravity = {Vec<2>(0, -9.81), {}};
+  const auto shares = carried_by_mesh<2>(m.problem.mesh, *m.problem.mesh.facet_set("y_max"));
+  m.problem.flow.inflows.push_back({"y_max", shares.node, shares.measure, {{{0, rate}}}});
+  // k_r(p) = rate / k: gravity alone drives the water
+  Real low = -2e4, high = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Real p = (low + high) / 2;
+    (soil.retention.conductance(p) < rate / soil.permeability ? low : high) = p;
+  }
+  m.problem.flow.heads.push_back({"y_min", nodes_on(m.problem.mesh, "y_min"), true, {}});
+  begin<2>(
+      m, [&](const Vec<2>&) { return low; }, Vec<2>::Zero());
+  const Real before = m.state.flow.drained;
+  make_steps(m, 400, 20);
+  Real sum = 0, count = 0;
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    if (m.state.particles.x[p][1] > 0.8)
+      sum += m.state.particles.water[p], ++count;
+  EXPECT_NEAR(sum / count, low, 0.03 * std::abs(low));
+  EXPECT_NEAR(m.state.flow.inflow, 400 * 20 * rate, 1e-9);
+  const Real drained = m.state.flow.drained;
+  make_steps(m, 1, 20);
+  EXPECT_NEAR(m.state.flow.drained - drained, 20 * rate, 0.01 * 20 * rate);
+  EXPECT_LT(before, drained);
+}
+
+TEST(PorePressure, LetsNoWaterInThroughADrySurface)
+{
+  FlowOfBody soil = pores(1e-2, 1e8);
+  soil.retention = {.entry = 5e3, .exponent = 3, .residual = 0};
+  auto m = saturated<2>(unit_box<2>(8, 0.2), soil, [](const Vec<2>& x) { return x[1] < 0.75; });
+  hold_everything(m);
+  m.problem.flow.surface_drains = true;
+  m.problem.loads.gravity = {Vec<2>(0, -9.81), {}};
+  begin<2>(
+      m, [](const Vec<2>& x) { return weight * (0.3 - x[1]); }, Vec<2>(0, -weight));
+  make_steps(m, 100, 1);
+  EXPECT_LT(rms(m, [](const Vec<2>& x) { return weight * (0.3 - x[1]); }), 1e-6 * weight);
+  EXPECT_NEAR(m.state.flow.drained, 0, 1e-12);
+}
+
+TEST(Retention, IsVanGenuchtens)
+{
+  const Retention curve{.entry = 1e4, .exponent = 2, .residual = 0.1};
+  EXPECT_EQ(curve.saturation(0), 1);
+  EXPECT_EQ(curve.conductance(5), 1);
+  EXPECT_NEAR(curve.saturation(-1e4), 0.1 + 0.9 * std::sqrt(0.5), 1e-12);
+  const Real p = -1.3e4, h = 1;
+  EXPECT_NEAR(curve.capacity(p), (curve.saturation(p + h) - curve.saturation(p - h)) / (2 * h), 1e-10);
+  const Real e = curve.effective(p);
+  EXPECT_NEAR(curve.conductance(p), std::sqrt(e) * std::pow(1 - std::sqrt(1 - e * e), 2), 1e-12);
 }
 
 /// One step of soil that is squeezed evenly: what its pores lose, the water in them takes up.

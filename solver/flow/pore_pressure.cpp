@@ -1,0 +1,61 @@
+#include "solver/flow/pore_pressure.hpp"
+
+#include "solver/flow/flow_system.hpp"
+
+namespace talus {
+
+template <int D>
+PorePressure<D>::PorePressure(const Mesh<D>& mesh)
+    : pressure_(to_size(mesh.n_nodes())), cells_(mesh), system_(std::make_unique<FlowSystem<D>>(mesh))
+{}
+
+template <int D>
+PorePressure<D>::PorePressure(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own)
+    : pressure_(to_size(mesh.n_nodes())),
+      cells_(ranks, mesh, subdomain),
+      system_(std::make_unique<FlowSystem<D>>(ranks, mesh, subdomain, own))
+{}
+
+template <int D>
+PorePressure<D>::PorePressure(PorePressure&&) noexcept = default;
+template <int D>
+PorePressure<D>& PorePressure<D>::operator=(PorePressure&&) noexcept = default;
+template <int D>
+PorePressure<D>::~PorePressure() = default;
+
+/// The mean of what the particles around say of the pressure at each node, which is exact for linear pressures.
+template <int D>
+void PorePressure<D>::read_particles(const Mesh<D>& mesh, const OwnNodes& own, const NodesInUse& in_use)
+{
+  in_use.for_each([&](Index n) {
+    Real weight = 0, sum = 0;
+    if (own.has(n))
+      for (const Index c : mesh.cells_of_node()[n]) {
+        const auto a = static_cast<std::size_t>(std::ranges::find(mesh.cell(c), n) - mesh.cell(c).begin());
+        weight += cells_[c].weight[a], sum += cells_[c].pressure[a];
+      }
+    pressure_[to_size(n)] = weight > 0 ? sum / weight : 0;
+  });
+}
+
+template <int D>
+void PorePressure<D>::advance(const FlowModel<D>& m, const std::vector<Material>& materials, const ParticleStrips<D>& strips,
+                              const FlowStep<D>& step, FlowLedger& ledger, ExactSums<Real>& work)
+{
+  const NodesInUse& in_use = m.field.nodes.in_use;
+  cells_.sum(m.mesh, m.flow, materials, strips);
+  read_particles(m.mesh, m.own, in_use);
+  system_->send(pressure_);
+  system_->prepare(m, cells_, step, pressure_);
+  std::vector<Real>& change = system_->solve(m, step, ledger);
+  system_->change_velocities(m, step, change, work);
+  in_use.for_each([&](Index n) { pressure_[to_size(n)] += change[to_size(n)]; });
+  system_->send(pressure_);
+  system_->record(m, cells_, step, change, pressure_, ledger);
+  ledger.begun = true;
+}
+
+template class PorePressure<2>;
+template class PorePressure<3>;
+
+}  // namespace talus
