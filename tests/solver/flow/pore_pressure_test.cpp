@@ -36,7 +36,7 @@ bool everywhere(const Vec<D>&)
 }
 FlowOfBody pores(Real permeability, Real bulk_modulus)
 {
-  return {.flows = true, .porosity = 0.4, .permeability = permeability, .bulk_modulus = bulk_modulus};
+  return {.flows = true, .porosity = 0.4, .permeability = permeability, .bulk_modulus = bulk_modulus, .retention = {}};
 }
 template <int D>
 std::vector<Index> nodes_on(const Mesh<D>& mesh, const std::string& facets)
