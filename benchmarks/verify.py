@@ -63,6 +63,7 @@ CASES = [
     "granular_chute",
     "clay_block",
     "softening_band",
+    "consolidation",
     "strip_footing",
     "factor_of_safety",
     "column_collapse",

@@ -200,7 +200,7 @@ inline std::vector<SceneCase> scenes_of_all()
                 "  - {type: run, duration: 0.02, water: {table: {points: [[0, 0.3], [2, 0.7]]}}}\n  - {type: run, duration: 0.02}\n"}});
   const SceneParts flow{
       .more =
-          "water: {table: {elevation: 0.7}, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3, kozeny_carman: true}, "
+          "water: {table: {depth: 0}, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3, kozeny_carman: true}, "
           "{body: high, porosity: 0.3, permeability: 1.0e-5, bulk_modulus: 1.0e8, biot: 0.9, "
           "retention: {entry: 2.0e3, exponent: 2, residual: 0.1}}], drained: [x_min], heads: [{on: x_max, "
           "level: 0.5, table: [[0, 1], [0.05, 1.4]]}], inflow: [{on: y_min, rate: 1.0e-4}]}}\n",
@@ -375,6 +375,7 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"surface_loads_solid", loaded_in_3d});
   SceneParts flow_in_3d = in_3d;
   flow_in_3d.more = "water: {flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3}], drained: [x_min]}}\n";
+  flow_in_3d.loads = "loads: [{type: gravity, acceleration: [0, 0, -9.81]}]\n";
   all.push_back({"flow_solid", flow_in_3d});
   in_3d.law = soil_law + ", softening_length: 0.3";
   all.push_back({"softening_length_solid", in_3d});
