@@ -115,7 +115,7 @@ def evaluate(lab):
     layers = {(size, width): layer("layer", size, width) for size, at in SIZES.items() for width, also in WIDTHS.items() if wanted(at, also)}
     others = {kernel: layer(kernel, 0.05, 0.4, {"kernel": kernel, "transfer.scheme": scheme})
               for kernel, scheme in tools.SUITED.items() if kernel != "projected"}
-    cut = {size: layer("cut", size, 0.4, {"mesh.regions[0].shape.high": [0.4, 1.17], "water.flow.drained": [], "loads[0].on": "layer:y_max"})
+    cut = {size: layer("cut", size, 0.4, {"mesh.regions[0].shape.high": [0.4, 1.17], "loads[0].on": "layer:y_max"})
            for size, at in SIZES.items() if wanted(at)}
     balls = {size: lab.run(f"{CASE}/ball.yaml", tools.label(f"ball_{size}"), {"mesh.size": size}) for size, at in BALLS.items() if wanted(at)}
     for (size, width), run in layers.items():

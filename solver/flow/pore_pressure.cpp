@@ -6,12 +6,13 @@ namespace talus {
 
 template <int D>
 PorePressure<D>::PorePressure(const Mesh<D>& mesh)
-    : pressure_(to_size(mesh.n_nodes())), cells_(mesh), system_(std::make_unique<FlowSystem<D>>(mesh))
+    : pressure_(to_size(mesh.n_nodes())), seen_(pressure_.size()), cells_(mesh), system_(std::make_unique<FlowSystem<D>>(mesh))
 {}
 
 template <int D>
 PorePressure<D>::PorePressure(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own)
     : pressure_(to_size(mesh.n_nodes())),
+      seen_(pressure_.size()),
       cells_(ranks, mesh, subdomain),
       system_(std::make_unique<FlowSystem<D>>(ranks, mesh, subdomain, own))
 {}
@@ -34,6 +35,7 @@ void PorePressure<D>::read_particles(const Mesh<D>& mesh, const OwnNodes& own, c
         const auto a = static_cast<std::size_t>(std::ranges::find(mesh.cell(c), n) - mesh.cell(c).begin());
         weight += cells_[c].weight[a], sum += cells_[c].pressure[a];
       }
+    seen_[to_size(n)] = weight > 0 ? 1 : 0;
     pressure_[to_size(n)] = weight > 0 ? sum / weight : 0;
   });
 }
@@ -46,6 +48,7 @@ void PorePressure<D>::advance(const FlowModel<D>& m, const std::vector<Material>
   cells_.sum(m.mesh, m.flow, materials, strips);
   read_particles(m.mesh, m.own, in_use);
   system_->send(pressure_);
+  system_->send(seen_);
   system_->prepare(m, cells_, step, pressure_);
   std::vector<Real>& change = system_->solve(m, step, ledger);
   system_->change_velocities(m, step, change, work);

@@ -44,7 +44,12 @@ class PorePressure {
   void advance(const FlowModel<D>& m, const std::vector<Material>& materials, const ParticleStrips<D>& strips, const FlowStep<D>& step,
                FlowLedger& ledger, ExactSums<Real>& work);
 
-  /// The pressure [Pa] of the material that was at x at the beginning of the step, in a cell with particles, and its gradient [Pa/m].
+  /// Whether all vertices of a cell have seen water; not so in a cell that its first particles have just entered.
+  bool knows(const Mesh<D>& mesh, Index cell) const noexcept
+  {
+    return std::ranges::all_of(mesh.cell(cell), [&](Index n) { return seen_[static_cast<std::size_t>(n)] != 0; });
+  }
+  /// The pressure [Pa] of the material that was at x at the beginning of the step, in a cell that is known, and its gradient [Pa/m].
   Real at(const Mesh<D>& mesh, Index cell, const Vec<D>& x) const noexcept
   {
     const auto shape = mesh.barycentric(cell, x);
@@ -64,7 +69,8 @@ class PorePressure {
  private:
   void read_particles(const Mesh<D>& mesh, const OwnNodes& own, const NodesInUse& in_use);
 
-  std::vector<Real> pressure_;  ///< [Pa]
+  std::vector<Real> pressure_;      ///< [Pa]
+  std::vector<std::uint8_t> seen_;  ///< nodes of cells with water
   FlowCells<D> cells_;
   std::unique_ptr<FlowSystem<D>> system_;
 };

@@ -7,7 +7,7 @@ namespace talus {
 
 /// Pore pressures of the particles of a strip of a body after a step of length dt [s]; nothing where the law of the body uses total stress.
 /// Those of flowing water are where the particles were at the beginning of the step, as nodes move with them; in stages in which it does not
-/// flow they stay what they are, once it has.
+/// flow they stay what they are, once it has, and so do those of particles that have just come to a cell whose nodes have not seen water yet.
 template <int D>
 StripColumn<Real> find_pore_pressures(const Model<D>& m, Index body, const StripColumns<D>& columns, Real dt,
                                       StripScratch<D>& scratch) noexcept
@@ -19,14 +19,15 @@ StripColumn<Real> find_pore_pressures(const Model<D>& m, Index body, const Strip
   const bool flows = m.problem.flow.flows(body), moves = flows && m.state.stage.flows, stays = flows && m.state.flow.begun && !moves;
   for (const CellRun<D>& run : scratch.runs) {
     const Index cell = run.frame->cell;
-    const Vec<D> gradient = moves ? m.work.flow->gradient(mesh, cell) : Vec<D>(Vec<D>::Zero());
+    const bool known = moves && m.work.flow->knows(mesh, cell);
+    const Vec<D> gradient = known ? m.work.flow->gradient(mesh, cell) : Vec<D>(Vec<D>::Zero());
     for (std::size_t i = run.begin; i < run.end; ++i) {
       Real& after = scratch.pore_after[i];
-      if (moves) {
+      if (known) {
         const Real p = m.work.flow->at(mesh, cell, columns.before.of(i));
         columns.water.set(i, p), columns.water_gradient.set(i, gradient);
         after = m.problem.flow.bodies[to_size(body)].stress_of(p);
-      } else if (stays) {
+      } else if (moves || stays) {
         after = columns.pore.of(i);
       } else {
         after = water->pressure(mesh, cell, columns.x.of(i));

@@ -287,6 +287,50 @@ TEST(PorePressure, OfStiffWaterDoesNotLimitTheStep)
   swings_undrained<3, Projected<3>>(1e-4, true);
 }
 
+/// A box with a linear pressure, too small to move anything, that flies through cells: each particle keeps its pressure.
+template <int D>
+void flies_with_its_pressure()
+{
+  const auto inside = [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.3)).cwiseAbs().maxCoeff() < 0.2; };
+  const Vec<D> speed = 0.4 * Vec<D>::Ones(), slope = 1e-3 * Vec<D>::Unit(0) - 2e-3 * Vec<D>::Unit(1);
+  auto m = saturated<D>(unit_box<D>(D == 2 ? 10 : 6, 0.2), pores(1e-12, 1e3), inside, [&](const Vec<D>&) { return speed; });
+  begin<D>(
+      m, [&](const Vec<D>& x) { return slope.dot(x); }, slope);
+  const int steps = 200;
+  make_steps(m, steps, 1.0 / steps);
+  EXPECT_LT(rms(m, [&](const Vec<D>& x) { return slope.dot(x - speed); }), 5e-3 * slope.norm());  // the box gives way a little
+}
+
+TEST(PorePressure, MovesWithTheMaterial)
+{
+  flies_with_its_pressure<2>();
+  flies_with_its_pressure<3>();
+}
+
+/// A part of the upper side is loaded, and no water leaves: pressures must not alternate from node to node far below.
+TEST(PorePressure, OfSealedSoilIsSmooth)
+{
+  auto m = saturated<2>(unit_box<2>(10, 0.2), pores(1e-12, 2e9), everywhere<2>);
+  m.problem.transfer = {.scheme = Scheme::tpic, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  for (const char* side : {"x_min", "x_max", "y_min"})
+    close_off<2>(m, side, Roller<2>{});
+  std::vector<Facet> loaded;
+  const std::vector<Facet> top = m.problem.mesh.facet_set("y_max").value();
+  for (const Facet facet : top)
+    if (m.problem.mesh.node(m.problem.mesh.nodes_of(facet)[0])[0] < 0.45)
+      loaded.push_back(facet);
+  m.problem.loads.on_mesh.push_back(carried_by_mesh<2>(m.problem.mesh, loaded));
+  m.problem.loads.on_mesh.back().pressure = 1000;
+  begin<2>(
+      m, [](const Vec<2>&) { return 0; }, Vec<2>::Zero());
+  make_steps(m, 300, 0.3 * 0.1 / std::sqrt(1.2e6 / 2000));
+  Real sum = 0, count = 0;
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    if (m.state.particles.x[p][1] < 0.5)
+      sum += m.state.particles.water_gradient[p].squaredNorm(), ++count;
+  EXPECT_LT(std::sqrt(sum / count), 800) << "Pa/m";  // 462; 3901 without the projection
+}
+
 TEST(FlowOfBody, HasPoresThatFollowTheVolume)
 {
   FlowOfBody soil = pores(1e-3, 1e9);
