@@ -24,7 +24,8 @@ class CoarsePressure {
   /// Takes the numbers of blocks in the whole mesh, on one of several ranks; those of the nodes must be sent to copies afterwards.
   std::vector<Real>& take_numbers(const Subdomain& subdomain);
 
-  /// `around`: what is known at the nodes of this rank and those around.  Adds up the matrix A = matrix + dt kick B^T M^-1 C B between unknown pressures and factorises it.  Collective.
+  /// Adds up the matrix A = matrix + dt kick B^T M^-1 C B between unknown pressures and factorises it; `around` is what is known at the nodes of
+  /// this rank and those around.  Collective.
   void prepare(Communicator& ranks, const Mesh<D>& mesh, const OwnNodes& own, const std::vector<NodePressure>& around,
                const SparseRows<Real>& matrix, const SparseRows<Vec<D>>& push, const std::vector<Mat<D>>& free,
                const std::vector<Real>& lightness, Real dt);
@@ -36,7 +37,7 @@ class CoarsePressure {
   /// What the nodes of one block add to an entry of the matrix.
   struct Part {
     Index row, column, of;  ///< blocks of the whole mesh
-    Index unused = 0;
+    Index padding = 0;      ///< sent to other ranks, so not left undefined
     Real value;
   };
   std::vector<Part> parts_of(const Mesh<D>& mesh, const IndexRange& nodes, const std::vector<NodePressure>& around,
