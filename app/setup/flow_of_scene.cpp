@@ -40,7 +40,7 @@ std::vector<Index> nodes_of(const Mesh<D>& mesh, std::span<const Facet> facets)
     for (const Index n : mesh.nodes_of(facet))
       nodes.push_back(n);
   std::ranges::sort(nodes);
-  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());  // std::ranges::unique of this library is not for clang
   return nodes;
 }
 

@@ -47,7 +47,7 @@ std::vector<Index> nodes_on(const Mesh<D>& mesh, const std::string& facets)
     for (const Index n : mesh.nodes_of(facet))
       nodes.push_back(n);
   std::ranges::sort(nodes);
-  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
 /// Holds all nodes, so that only water moves.
