@@ -335,10 +335,27 @@ void add_keys(const ValueType& type, std::set<std::string>& keys)
     }
 }
 
+TEST(Scene, SaysHowWaterFlows)
+{
+  const Scene s = scene("flow.yaml");
+  const FlowSpec flow = s.water.value().flow.value();
+  ASSERT_EQ(flow.bodies.size(), 2U);
+  EXPECT_EQ(flow.bodies[0].porosity, 0.4);
+  EXPECT_EQ(flow.bodies[0].biot, 0.9);
+  EXPECT_TRUE(flow.bodies[0].kozeny_carman);
+  EXPECT_EQ(flow.bodies[0].retention.value().exponent, 2.5);
+  EXPECT_EQ(flow.bodies[1].permeability, 1e-3);
+  EXPECT_EQ(flow.bodies[1].bulk_modulus, 2.2e9);
+  EXPECT_FALSE(flow.bodies[1].retention.has_value());
+  EXPECT_EQ(flow.heads.at(0).level, 1.5);
+  EXPECT_EQ(flow.inflow.at(0).table(1), 1);
+  EXPECT_EQ(flow.surface, SurfaceFlow::impermeable);
+}
+
 TEST(Scene, ExamplesUseEveryKeyThereIs)
 {
   std::string text;
-  for (const std::string name : {"plane.yaml", "solid.yaml", "smallest.yaml", "terrain.yaml", "section.yaml", "shapes.yaml"})
+  for (const std::string name : {"plane.yaml", "solid.yaml", "smallest.yaml", "terrain.yaml", "section.yaml", "shapes.yaml", "flow.yaml"})
     text += scene(name).text;
   std::set<std::string> keys;
   add_keys(value_type<Scene>(), keys);
