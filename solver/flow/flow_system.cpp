@@ -74,7 +74,7 @@ void FlowSystem<D>::find_rows(const FlowModel<D>& m, const FlowCells<D>& cells, 
   });
 }
 
-/// Which pressures are given, and what flows in.
+/// Which pressures are given.
 template <int D>
 void FlowSystem<D>::find_given_pressures(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step,
                                          const std::vector<Real>& pressure)
@@ -119,6 +119,7 @@ void FlowSystem<D>::find_responses(const FlowModel<D>& m, const FlowStep<D>& ste
 {
   const Nodes<D>& nodes = m.field.nodes;
   nodes.in_use.for_each([&](Index n) {
+    free_[to_size(n)].setIdentity();  // conditions of a stage before may have gone
     lightness_[to_size(n)] = m.own.has(n) && nodes.active[to_size(n)] != 0 ? step.kick / nodes.sum[to_size(n)].mass : 0;
   });
   send(lightness_);
@@ -286,7 +287,7 @@ void FlowSystem<D>::record(const FlowModel<D>& m, const FlowCells<D>& cells, con
   ledger.squeezed += all.squeezed, ledger.seepage += all.seepage;
 }
 
-/// How much the velocities that the step has found squeeze the pores, and what is left to the changes of pressure.
+/// What flows in, how much the velocities that the step has found squeeze the pores, and what is left to the changes of pressure.
 template <int D>
 void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowStep<D>& step, const std::vector<Real>& pressure)
 {

@@ -307,6 +307,27 @@ TEST(PorePressure, MovesWithTheMaterial)
   flies_with_its_pressure<3>();
 }
 
+/// What conditions held at a stage before must not hold in the next one.
+TEST(PorePressure, ForgetsConditionsThatHaveGone)
+{
+  constexpr Real dt = 1e-4;
+  const auto pressures = [](bool was_held) {
+    auto m = saturated<2>(unit_box<2>(4, 0.2), pores(1e-3, 1e9), everywhere<2>);
+    if (was_held)
+      hold_everything(m);
+    begin<2>(
+        m, [](const Vec<2>&) { return 0; }, Vec<2>::Zero());
+    make_steps(m, 1, dt);
+    m.state.boundary = {};
+    bind_boundary_conditions(m);
+    for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+      m.state.particles.v.set(p, -0.1 * m.state.particles.x[p]);
+    make_steps(m, 1, dt);
+    return m.state.particles.water.values();
+  };
+  EXPECT_EQ(pressures(true), pressures(false));
+}
+
 /// A part of the upper side is loaded, and no water leaves: pressures must not alternate from node to node far below.
 TEST(PorePressure, OfSealedSoilIsSmooth)
 {
