@@ -33,7 +33,7 @@ class Column:
     def __init__(self, data):
         modulus, self.density = data["modulus of the column [Pa]"], data["density of the column [kg/m^3]"]
         self.drag = data["unit weight [N/m^3]"] / data["permeability of the column [m/s]"]
-        self.load, self.ramp = data["load of the column [Pa]"], data["ramp of the column [s]"]
+        self.load, self.ramp, self.height = data["load of the column [Pa]"], data["ramp of the column [s]"], data["height of the column [m]"]
         self.wave, self.impedance = np.sqrt(modulus / self.density), np.sqrt(modulus * self.density)
 
     def velocity(self, z, t):
@@ -59,10 +59,13 @@ class Column:
         return [[round(float(t), 8), round(float(np.sin(np.pi / 2 * t / self.ramp) ** 2), 8)] for t in times]
 
     def exact(self, load, z, t):
-        """Displacement [m] and pressure [Pa] under one of the LOADS."""
+        """Displacement [m] and pressure [Pa] under one of the LOADS, by a table over the depth."""
+        at = np.linspace(0, self.height, 1201)
         if load == LOADS[0]:
-            return self.displacement(z, t), self.pressure(z, t)
-        return self.ramped(self.displacement, z, t), self.ramped(self.pressure, z, t)
+            found = self.displacement(at, t), self.pressure(at, t)
+        else:
+            found = self.ramped(self.displacement, at, t), self.ramped(self.pressure, at, t)
+        return [np.interp(z, at, values) for values in found]
 
 
 def column_errors(run, load, data):
