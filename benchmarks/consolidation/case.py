@@ -222,7 +222,7 @@ def draw_more(figure, weights, plates, closed, data):
             left.plot((frame["pore_pressure"] - unit * (1 - height)) / first, height, ".", markersize=1.5)
             left.plot(weight_pressure(depth, at), 1 - depth, "k-", linewidth=0.7)
     left.set(xlabel="excess pressure over that of the base at the start", ylabel="height [m]")
-    times = np.linspace(1e-4, 0.24, 200)
+    times = np.linspace(1e-4, 0.16, 200)
     right.plot(times, [closed.pressure(np.zeros(1), t / closed.diffusivity)[0] for t in times], "k-", linewidth=0.8, label="closed form")
     for size, run in plates.items():
         right.plot(*plate_middle(run, closed), "o-", markersize=2, linewidth=0.6, label=f"cells of {size:g} m")
