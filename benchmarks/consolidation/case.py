@@ -267,7 +267,8 @@ def evaluate(lab):
     cut = {size: layer("cut", size, 0.4, {"mesh.regions[0].shape.high": [0.4, 1.17], "loads[0].on": "layer:y_max"})
            for size, at in SIZES.items() if wanted(at)}
     balls = {size: lab.run(f"{CASE}/ball.yaml", tools.label(f"ball_{size}"), {"mesh.size": size}) for size, at in BALLS.items() if wanted(at)}
-    weights = {(size, width): layer("weight", size, width, scene="self_weight") for size, at in SIZES.items() for width, also in WIDTHS.items() if wanted(at, also)}
+    weights = {(size, width): layer("weight", size, width, scene="self_weight")
+               for size, at in SIZES.items() for width, also in WIDTHS.items() if wanted(at, also) and (size > 0.03 or width == 0.4)}
     plates = {(size, height): lab.run(f"{CASE}/mandel.yaml", tools.label(f"plate_{size}_{height}"), {
         "mesh.size": size, "mesh.regions[0].shape.high": [1, height], "bodies[0].shape.high": [1, height], "boundaries[2].table": closed.table(height)})
               for size, at in PLATES.items() for height, also in HEIGHTS.items() if wanted(at, also) and (size > 0.03 or height == 0.4)}
