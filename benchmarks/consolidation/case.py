@@ -175,13 +175,14 @@ def weight_results(runs, data):
     for (size, width), run in runs.items():
         if size < 0.1:
             results += [tools.Result(CASE, f"own weight: error of the excess pressure at T_v = {factor:g}, cells of {size:g} m, {width:g} m wide", "-",
-                                     weight_error(run, data, factor), "at most", data["slack of the pressure"], 0.0, data["source of the layer under its own weight"], run)
+                                     weight_error(run, data, factor), "at most", data["slack of the pressure"], 0.0,
+                                     data["source of the layer under its own weight"], run)
                         for factor in (EARLY, LATE)]
     for width in sorted({width for _, width in runs}):
         sizes = [size for size in SIZES if (size, width) in runs]
         results.append(tools.Result(CASE, f"own weight: order of the error at T_v = {EARLY:g}, {width:g} m wide", "-",
-                                    tools.observed_order(sizes, [weight_error(runs[size, width], data, EARLY) for size in sizes]), "at least", data["order asked"],
-                                    2.0, "linear shape functions", runs[sizes[-1], width]))
+                                    tools.observed_order(sizes, [weight_error(runs[size, width], data, EARLY) for size in sizes]), "at least",
+                                    data["order asked"], 2.0, "linear shape functions", runs[sizes[-1], width]))
     return results
 
 
@@ -196,13 +197,14 @@ def plate_results(runs, closed, data):
         judged = {"criterion": "at most", "tolerance": data["slack of the pressure"]} if size < 0.1 else {"criterion": "reported", "tolerance": None}
         near = {"criterion": "within", "tolerance": data["slack of the degree"]} if size < 0.1 else {"criterion": "reported", "tolerance": None}
         results += [
-            tools.Result(CASE, f"plate: error of the pressure at c_v t / a^2 = 0.1, {name}", "-", errors[size, height][0], reference=0.0, source=source, run=run, **judged),
-            tools.Result(CASE, f"plate: the same under a force that is whole from the start, {name}", "-", errors[size, height][1], reference=0.0, source=source, run=run,
-                         **judged),
-            tools.Result(CASE, f"plate: largest pressure in the middle over the load, {name}", "-", plate_middle(run, closed)[1].max(), reference=float(largest[1]),
-                         source=source, run=run, **near),
-            tools.Result(CASE, f"plate: mean force on the stiff plate over that of the closed form, {name}", "-", float(force.mean()), reference=1.0, source=source,
-                         run=run, **near)]
+            tools.Result(CASE, f"plate: error of the pressure at c_v t / a^2 = 0.1, {name}", "-", errors[size, height][0], reference=0.0, source=source,
+                         run=run, **judged),
+            tools.Result(CASE, f"plate: the same under a force that is whole from the start, {name}", "-", errors[size, height][1], reference=0.0, source=source,
+                         run=run, **judged),
+            tools.Result(CASE, f"plate: largest pressure in the middle over the load, {name}", "-", plate_middle(run, closed)[1].max(),
+                         reference=float(largest[1]), source=source, run=run, **near),
+            tools.Result(CASE, f"plate: mean force on the stiff plate over that of the closed form, {name}", "-", float(force.mean()), reference=1.0,
+                         source=source, run=run, **near)]
     for height in sorted({height for _, height in runs}):
         sizes = [size for size in PLATES if (size, height) in runs]
         results.append(tools.Result(CASE, f"plate: order of the error of the pressure, {height:g} m high", "-",
