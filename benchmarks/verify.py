@@ -64,6 +64,7 @@ CASES = [
     "clay_block",
     "softening_band",
     "consolidation",
+    "saturated_soil",
     "strip_footing",
     "factor_of_safety",
     "column_collapse",
