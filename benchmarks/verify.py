@@ -64,6 +64,7 @@ CASES = [
     "clay_block",
     "softening_band",
     "consolidation",
+    "seepage",
     "strip_footing",
     "factor_of_safety",
     "column_collapse",
