@@ -114,11 +114,20 @@ def let_out(run, data, weight):
     return float(run.history["water_drained"][-1] / (held + run.history["water_inflow"][-1] - now))
 
 
-def factor(data, dry=False):
-    """Factor of safety of an infinite slope in closed form."""
+def factor(data, dry=False, depth=1.0):
+    """Factor of safety of an infinite slope in closed form, on a plane at a depth [m] across the slope."""
     angle, weight, water = np.radians(data["angle [deg]"]), data["unit weight of the soil [N/m^3]"], 0 if dry else data["unit weight of water [N/m^3]"]
     friction = np.tan(np.radians(data["friction angle [deg]"])) / np.tan(angle)
-    return float(data["cohesion [Pa]"] / (weight * data["thickness [m]"] * np.sin(angle)) + (1 - water / weight) * friction)
+    return float(data["cohesion [Pa]"] / (weight * depth * np.sin(angle)) + (1 - water / weight) * friction)
+
+
+def mobilised(search, data):
+    """Strength over shear stress near the base in the middle of the slope at rest, with their means; and the mean depth [m]."""
+    frame = tools.talus.Run(search.folder / "at_rest").particles[-1]
+    x, y, stress = frame["position"][:, 0], frame["position"][:, 1], frame["effective_stress"]
+    near = (np.abs(x - data["length [m]"] / 2) < data["length [m]"] / 6) & (y < data["thickness [m]"] / 4)
+    strength = data["cohesion [Pa]"] - stress[near, 1].mean() * np.tan(np.radians(data["friction angle [deg]"]))
+    return float(strength / abs(stress[near, 3].mean())), float(data["thickness [m]"] - y[near].mean())
 
 
 def slope_error(search, data, weight):
@@ -170,13 +179,12 @@ def slope_results(searches, data, weight):
         run = search.trial(search.found["highest_that_holds"])
         results.append(tools.Result(CASE, f"factor of safety, {name}", "-", search.found["factor_of_safety"], "within", data["slack of the factor"], exact,
                                     data["source"], run))
+        found, depth = mobilised(search, data)
+        results.append(tools.Result(CASE, f"strength over shear stress near the base, {name}", "-", found, "within", data["slack of the factor"],
+                                    factor(data, "base" in name, depth), data["source"], run))
         if name.startswith("cells"):
             results.append(tools.Result(CASE, f"error of the pressure in the middle of the slope, {name}", "-", slope_error(search, data, weight), "at most",
                                         data["slack of the pressure"], 0.0, data["source"], run))
-    if len(sizes := [size for size in SLOPES if f"cells of {size:g} m" in searches]) > 1:
-        found = [searches[f"cells of {size:g} m"][0].found["factor_of_safety"] for size in sizes]
-        results.append(tools.Result(CASE, "factor of safety, line through all cells at size zero", "-", float(np.polyfit(sizes, found, 1)[1]), "within",
-                                    data["slack of the factor"], factor(data), data["source"], run))
     return results
 
 
