@@ -65,6 +65,7 @@ CASES = [
     "softening_band",
     "consolidation",
     "saturated_soil",
+    "seepage",
     "strip_footing",
     "factor_of_safety",
     "column_collapse",
