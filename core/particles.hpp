@@ -42,6 +42,7 @@ struct Particles {
   ParticleColumn<Real> pore;              ///< pore pressure, part of `stress`; 0 in bodies whose laws use total stress [Pa]
   ParticleColumn<Real> water;             ///< pressure of water that flows, of which `pore` is the part of `stress` [Pa]
   ParticleColumn<Vec<D>> water_gradient;  ///< its gradient, see PorePressure [Pa/m]
+  ParticleColumn<Real> water_at_rest;     ///< what it would be below the water table of the scene, at rest [Pa]
   ParticleColumn<Real> side;              ///< of the nearest sheet, see SideOfSheet [-]
   ParticleColumn<Vec<D>> reference;       ///< position at which the kernel weighs, where that is not always x [m]
   ParticleColumn<Mat<D>> G;               ///< deformation gradient since the particle was there
@@ -71,6 +72,7 @@ struct Particles {
     f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied);
     f("volume_ratio", "-", self.volume_ratio), f("viscous_pressure", "Pa", self.viscous), f("pore_pressure", "Pa", self.pore);
     f("water_pressure", "Pa", self.water), f("water_gradient", "Pa/m", self.water_gradient);
+    f("water_at_rest", "Pa", self.water_at_rest);
     f("side", "-", self.side), f("reference", "m", self.reference), f("since_reference", "-", self.G);
   }
 };

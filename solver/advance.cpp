@@ -1,6 +1,7 @@
 #include "solver/advance.hpp"
 
 #include "core/stop_watch.hpp"
+#include "solver/model/seepage.hpp"
 #include "solver/rigid/rigid_contacts.hpp"
 #include "solver/state/integrate.hpp"
 
@@ -135,10 +136,8 @@ void find_pore_pressures(Model<D>& m, const Kick& kick, Real dt)
   State<D>& state = m.state;
   if (!state.stage.flows)
     return;
-  const Gravity<D>& gravity = m.problem.loads.gravity;
-  const Real end = state.clock.time + dt, full = gravity.acceleration.norm();
-  const Vec<D> weight = full > 0 ? Vec<D>(m.problem.flow.unit_weight / full * gravity(end, state.stage.ramp(end))) : Vec<D>(Vec<D>::Zero());
-  const FlowStep<D> step{.end = end, .dt = dt, .kick = kick.length(), .weight = weight};
+  const Real end = state.clock.time + dt;
+  const FlowStep<D> step{.end = end, .dt = dt, .kick = kick.length(), .weight = weight_of_water(m.problem, state.stage, end)};
   const FlowModel<D> model{m.problem.mesh, m.problem.flow, m.problem.own, *m.problem.ranks, state.boundary, m.work.fields.front()};
   m.work.flow->advance(model, state.materials, *m.work.strips, step, state.flow, m.work.sums.pore);
 }

@@ -4,6 +4,11 @@
 
 namespace talus {
 
+/// The pressure of flowing water at a particle [Pa], and what it would be below the water table of the scene.
+struct WaterAt {
+  Real pressure, at_rest;
+};
+
 /// A particle in columns.
 template <int D>
 struct ColumnParticle {
@@ -12,12 +17,13 @@ struct ColumnParticle {
   const Real* of_law;
 
   std::int64_t id() const noexcept { return all.id[p]; }
-  Real mass() const noexcept { return all.mass[p]; }                     ///< [kg]
-  Real volume0() const noexcept { return all.volume0[p]; }               ///< at the start [m^D]
-  Vec<D> x() const noexcept { return all.x[p]; }                         ///< [m]
-  Vec<D> displacement() const noexcept { return all.x[p] - all.x0[p]; }  ///< [m]; with start positions only
-  Vec<D> v() const noexcept { return all.v[p]; }                         ///< [m/s]
-  Sym3 stress() const noexcept { return all.stress[p]; }                 ///< [Pa]
+  Real mass() const noexcept { return all.mass[p]; }                               ///< [kg]
+  Real volume0() const noexcept { return all.volume0[p]; }                         ///< at the start [m^D]
+  Vec<D> x() const noexcept { return all.x[p]; }                                   ///< [m]
+  Vec<D> displacement() const noexcept { return all.x[p] - all.x0[p]; }            ///< [m]; with start positions only
+  Vec<D> v() const noexcept { return all.v[p]; }                                   ///< [m/s]
+  Sym3 stress() const noexcept { return all.stress[p]; }                           ///< [Pa]
+  WaterAt water() const noexcept { return {all.water[p], all.water_at_rest[p]}; }  ///< where water flows only
   Real history(int number) const noexcept { return of_law[number]; }
 };
 
@@ -35,6 +41,7 @@ struct StripParticle {
   Vec<D> displacement() const noexcept { return all.x.of(p) - all.x0.of(p); }
   Vec<D> v() const noexcept { return all.v.of(p); }
   Sym3 stress() const noexcept { return all.stress.of(p); }
+  WaterAt water() const noexcept { return {all.water.of(p), all.water_at_rest.of(p)}; }
   Real history(int number) const noexcept { return of_law.component(number)[p]; }
 };
 

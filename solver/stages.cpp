@@ -90,7 +90,9 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
   const auto follows_table = [&m](Index body) {
     return m.problem.water.drains(body) && !(m.problem.flow.flows(body) && m.state.flow.begun);
   };
-  soak(m.problem.mesh, {m.problem.water, ramp * m.problem.loads.gravity.table(time)}, m.state.bodies, follows_table, m.state.particles);
+  const auto stress_of = [&m](Index body, Real p) { return m.problem.flow.stress_of(body, p); };
+  soak(m.problem.mesh, {m.problem.water, ramp * m.problem.loads.gravity.table(time)}, m.state.bodies, follows_table, stress_of,
+       m.state.particles);
   if (!stage.start_stress.empty())
     set_start_stress(m.problem.mesh, m.problem.subdomain, *m.problem.ranks, m.problem.loads.gravity(time, ramp),
                      std::span(stage.start_stress), m.work.order, only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials,

@@ -12,6 +12,7 @@
 #include "core/parallel/threads.hpp"
 #include "io/output/output_fields.hpp"
 #include "materials/interface/any_law.hpp"
+#include "solver/model/seepage.hpp"
 
 namespace talus {
 
@@ -97,9 +98,13 @@ std::vector<std::string> particle_fields_of(const OutputSpec& outputs)
 }
 
 template <int D>
-Column particle_column(const State<D>& state, std::span<const Index> rows, std::string_view name)
+Column particle_column(const Problem<D>& problem, const State<D>& state, std::span<const Index> rows, std::string_view name)
 {
-  std::optional<Column> column = column_of_table<D>(particle_fields(), name, state, rows);
+  struct {
+    const Problem<D>& problem;
+    const State<D>& state;
+  } const of{problem, state};
+  std::optional<Column> column = column_of_table<D>(particle_fields(), name, of, rows);
   return column ? *std::move(column) : history_column(state, rows, name);
 }
 
@@ -136,8 +141,8 @@ std::vector<Real> positions(const Particles<D>& particles, std::span<const Index
   return places;
 }
 
-template Column particle_column<2>(const State<2>&, std::span<const Index>, std::string_view);
-template Column particle_column<3>(const State<3>&, std::span<const Index>, std::string_view);
+template Column particle_column<2>(const Problem<2>&, const State<2>&, std::span<const Index>, std::string_view);
+template Column particle_column<3>(const Problem<3>&, const State<3>&, std::span<const Index>, std::string_view);
 template Column node_column<2>(const RunView<2>&, std::string_view);
 template Column node_column<3>(const RunView<3>&, std::string_view);
 template std::vector<Index> rows_by_id<2>(const Particles<2>&);

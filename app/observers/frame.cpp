@@ -12,7 +12,7 @@ Frame::ParticleFile particles_of_frame(const RunView<D>& view, const OutputSpec&
   on_slices(view, [&](const State<D>& slice, const std::vector<Body>&, const Slice& of_file) {
     const auto rows = rows_by_id(slice.particles);
     for (const std::string& name : particle_fields_of(outputs))
-      part.columns.push_back(particle_column(slice, rows, name));
+      part.columns.push_back(particle_column(view.problem, slice, rows, name));
     part.ids.reserve(rows.size());
     for (const Index row : rows)
       part.ids.push_back(slice.particles.id[static_cast<std::size_t>(row)]);

@@ -174,8 +174,11 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     add(cut_columns(), cut.group);
   for (const RigidBody<D>& rigid : start.problem.rigid.bodies)
     add(rigid_columns(), rigid.name);
-  for (const PointSpec& point : spec.points)
+  for (const PointSpec& point : spec.points) {
     add(point_columns(), point.name);
+    if (start.problem.flow.any())
+      add(point_water_columns(), point.name);
+  }
   for (const FrontSpec& one : spec.fronts)
     add(front_columns(), one.name);
   for (const WallSpec& wall : spec.walls)
@@ -323,13 +326,17 @@ void HistoryWriter<D>::add_points(const RunView<D>& view, std::vector<Real>& row
     std::size_t body = 0;
     std::vector<Real> values;
   };
+  const bool flows = view.problem.flow.any();
   std::vector<Found> here(followed.size());  // of each id
   if (!followed.empty())
     parallel_for_uneven(static_cast<Index>(view.order.keys()), [&](Index key) {
       for_each_particle(view, static_cast<std::size_t>(key), [&](const auto& p) {
         if (const auto place = followed.place(p.id())) {  // ids are unique: no other thread writes here
           here[*place].body = static_cast<std::size_t>(key / view.order.blocks);
-          put_all<D>(point_columns(), PointNow<D>{p.x(), p.displacement(), p.v(), p.stress()}, here[*place].values);
+          std::vector<Real>& values = here[*place].values;
+          put_all<D>(point_columns(), PointNow<D>{p.x(), p.displacement(), p.v(), p.stress()}, values);
+          if (flows)
+            put_all<D>(point_water_columns(), p.water(), values);
         }
       });
     });
@@ -337,7 +344,8 @@ void HistoryWriter<D>::add_points(const RunView<D>& view, std::vector<Real>& row
     const Found& found = here[*followed.place(state_.followed[k])];
     const std::string& body = spec_.points[k].body;
     const bool is_there = body.empty() || view.state.bodies[found.body].name == body;
-    std::vector<Real> point(csv_columns(point_columns(), "", D).size(), empty_entry);
+    std::vector<Real> point(csv_columns(point_columns(), "", D).size() + (flows ? csv_columns(point_water_columns(), "", D).size() : 0),
+                            empty_entry);
     for (const std::vector<Real>& of_rank : gather_rows<Real>(*view.problem.ranks, is_there ? found.values : std::vector<Real>()))
       if (!of_rank.empty())
         point = of_rank;

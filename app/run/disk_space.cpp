@@ -45,7 +45,7 @@ FileSizes file_sizes(const RunView<D>& view, const OutputSpec& outputs)
   const Index n_cells = view.problem.subdomain.alone() ? view.problem.mesh.n_cells() : view.problem.subdomain.whole_cells;
   if (outputs.particles) {
     const Real fields =
-        bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(view.state, {}, name); });
+        bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(view.problem, view.state, {}, name); });
     sizes.particles = vtk_header + particles * (place_bytes + id_bytes + vertex_bytes + fields);
   }
   if (outputs.mesh) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "app/setup/setup.hpp"
-#include "solver/loads/loads.hpp"
 
 namespace talus {
 
@@ -56,6 +55,9 @@ Flow flow_of(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& at
   const FlowSpec& spec = *scene.water->flow;
   flow.unit_weight = scene.water->unit_weight;
   flow.surface_drains = spec.surface == SurfaceFlow::drained;
+  flow.pace = spec.pace;
+  if (spec.rain)
+    flow.rain = scaled(spec.rain->rate, spec.rain->table);
   flow.bodies.resize(bodies.size());
   for (const PoresSpec& pores : spec.bodies) {
     const auto body = std::ranges::find(bodies, pores.body, &Body::name);
@@ -96,6 +98,27 @@ Flow flow_of(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& at
   return flow;
 }
 
+template <int D>
+std::vector<MeshTraction<D>> open_water_of(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& at_start)
+{
+  std::vector<MeshTraction<D>> loads;
+  if (!scene.water || !scene.water->flow)
+    return loads;
+  for (const HeadSpec& head : scene.water->flow->heads)
+    if (const auto facets = mesh.facet_set(head.on)) {
+      MeshTraction<D> load = carried_by_mesh<D>(mesh, at_start.orient_facets(*facets));
+      load.where = head.where;
+      load.unit_weight = scene.water->unit_weight;
+      load.level = scaled(head.level, head.table);
+      for (const Index n : load.node)
+        load.height.push_back(mesh.node(n)[D - 1]);
+      loads.push_back(std::move(load));
+    }
+  return loads;
+}
+
+template std::vector<MeshTraction<2>> open_water_of(const Scene&, const Mesh<2>&, const CellOccupancy<2>&);
+template std::vector<MeshTraction<3>> open_water_of(const Scene&, const Mesh<3>&, const CellOccupancy<3>&);
 template Flow flow_of(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, const std::vector<Body>&, SceneErrorCollector&,
                       std::vector<std::string>&);
 template Flow flow_of(const Scene&, const Mesh<3>&, const CellOccupancy<3>&, const std::vector<Body>&, SceneErrorCollector&,

@@ -4,6 +4,7 @@
 #include "app/setup/checks/scene_error_collector.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/flow/flow.hpp"
+#include "solver/loads/loads.hpp"
 
 namespace talus {
 
@@ -11,5 +12,9 @@ namespace talus {
 template <int D>
 Flow flow_of(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& at_start, const std::vector<Body>& bodies,
              SceneErrorCollector& errors, std::vector<std::string>& warnings);
+
+/// The weight of the open water at heads, a load on the same facets; groups that the mesh does not have are left out.
+template <int D>
+std::vector<MeshTraction<D>> open_water_of(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& at_start);
 
 }  // namespace talus

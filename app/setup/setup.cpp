@@ -294,6 +294,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.conditions.water = water_of(
       scene, mesh, setup.state.bodies, [&](Index cell) { return at_start(cell); }, errors, setup.warnings);
   setup.conditions.flow = flow_of(scene, mesh, at_start, setup.state.bodies, errors, setup.warnings);
+  for (MeshTraction<D>& load : open_water_of(scene, mesh, at_start))
+    setup.conditions.loads.on_mesh.push_back(std::move(load));
   saturate(scene, 0, mesh, setup.conditions.water, setup.state.bodies, setup.state.particles);
   if (scene.water && scene.water->table) {
     warn_if_dry(mesh, ranks, setup);

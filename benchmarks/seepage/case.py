@@ -108,9 +108,10 @@ def front_of(run, time, data, weight, size):
 def let_out(run, data, weight):
     """Volume of water that the history says has left, over what the particles lack beside what has rained."""
     first, last = run.frames[0], run.frames[-1]
-    now = (last["volume"] * content(last["pore_pressure"] / weight, data)).sum()
-    grown = run.history["pores_grown"][-1]
-    held = first["volume"].sum() * data["saturated water content"] + grown
+    full = data["saturated water content"]
+    pores = last["volume"] - (1 - full) * first["volume"]  # grains keep their volume
+    now = (pores * content(last["pore_pressure"] / weight, data) / full).sum()
+    held = full * first["volume"].sum()
     return float(run.history["water_drained"][-1] / (held + run.history["water_inflow"][-1] - now))
 
 

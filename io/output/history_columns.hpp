@@ -119,6 +119,15 @@ constexpr auto point_columns()
                     quantity<symmetric>("{}_s", "Pa", "Cauchy stress", [](const auto& point) { return point.stress; })};
 }
 
+/// Of the water at a point where it flows.
+constexpr auto point_water_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{quantity<number>("{}_p", "Pa", "pore pressure, where water flows", [](const auto& water) { return water.pressure; }),
+                    quantity<number>("{}_excess", "Pa", "pore pressure less that of water at rest below water.table",
+                                     [](const auto& water) { return water.pressure - water.at_rest; })};
+}
+
 constexpr auto front_columns()
 {
   using enum QuantityKind;

@@ -1,5 +1,6 @@
 #pragma once
 // The group `flow` of the block `water`: how water flows through pores.
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -60,11 +61,11 @@ struct HeadSpec {
   SourceLocation where;
   static constexpr auto fields()
   {
-    return std::tuple{required("on", &HeadSpec::on, any, "-",
-                               "facet group beside which there is water: the pore pressure is that of the depth below its level"),
-                      required("level", &HeadSpec::level, any, "m",
-                               "elevation of the surface of that water; its weight on the ground is a load of its own"),
-                      optional("table", &HeadSpec::table, any, "-", "factor of the level in time: list of [time, factor]")};
+    return std::tuple{
+        required("on", &HeadSpec::on, any, "-",
+                 "facet group beside which there is water: the pore pressure is that of the depth below its level"),
+        required("level", &HeadSpec::level, any, "m", "elevation of the surface of that water, whose weight presses on the facets"),
+        optional("table", &HeadSpec::table, any, "-", "factor of the level in time: list of [time, factor]")};
   }
 };
 
@@ -82,6 +83,18 @@ struct InflowSpec {
   }
 };
 
+/// Rain on the surface of bodies as they move.
+struct RainSpec {
+  Real rate{};
+  Table table;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("rate", &RainSpec::rate, positive, "m/s", "volume per horizontal area and time"),
+                      optional("table", &RainSpec::table, any, "-", "factor in time: list of [time, factor]")};
+  }
+};
+
 enum class SurfaceFlow : std::uint8_t { drained, impermeable };
 constexpr std::array<std::string_view, 2> enum_names(SurfaceFlow) { return {"drained", "impermeable"}; }
 
@@ -90,6 +103,8 @@ struct FlowSpec {
   std::vector<std::string> drained;
   std::vector<HeadSpec> heads;
   std::vector<InflowSpec> inflow;
+  std::optional<RainSpec> rain;
+  Table pace;
   SurfaceFlow surface = SurfaceFlow::drained;
   SourceLocation where;
   static constexpr auto fields()
@@ -99,9 +114,24 @@ struct FlowSpec {
         optional("drained", &FlowSpec::drained, any, "-", "facet groups at which the pore pressure is zero; other walls are impermeable"),
         optional_list("heads", &FlowSpec::heads, "facet groups with open water behind them"),
         optional_list("inflow", &FlowSpec::inflow, "facet groups through which a given volume of water flows in, such as rain"),
+        group("rain", &FlowSpec::rain,
+              "on the surface of the bodies as they move; what the soil cannot take up runs off. It needs pores with a retention"),
+        optional("pace", &FlowSpec::pace, any, "-",
+                 "how many times faster water flows than permeabilities, inflow and rain say, in time: list of [time, factor]. Hours of "
+                 "seepage then pass in seconds; give 1 from where soil begins to move"),
         optional_choice(
             "surface", &FlowSpec::surface,
             "of the bodies as they move, away from walls. drained: the pore pressure is zero there; impermeable: under a membrane")};
+  }
+  void check(std::vector<std::string>& problems) const
+  {
+    if (rain && surface == SurfaceFlow::impermeable)
+      problems.emplace_back("rain falls on a surface that is drained: leave out rain, or surface: impermeable");
+    if (rain && std::none_of(bodies.begin(), bodies.end(), [](const PoresSpec& one) { return one.retention.has_value(); }))
+      problems.emplace_back(
+          "all rain would run off, as pores without a retention are always full: give a body a retention, or leave out rain");
+    if (std::any_of(pace.points.begin(), pace.points.end(), [](const auto& point) { return !(point[1] > 0); }))
+      problems.emplace_back("the factors of pace are positive");
   }
 };
 

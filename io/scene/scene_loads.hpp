@@ -96,7 +96,7 @@ struct WaterSpec {
         group("flow", &WaterSpec::flow, "water that flows through pores; default water at rest"),
         optional("unit_weight", &WaterSpec::unit_weight, positive, "N/m^3", "pore pressure gained per metre below the table"),
         optional("suction", &WaterSpec::suction, non_negative, "Pa",
-                 "largest suction above the table, up to which it grows as the pressure does below; 0 for none"),
+                 "largest suction above the table, up to which it grows as the pressure does below; 0 for none. With flow: at the start"),
         optional("bodies", &WaterSpec::bodies, any, "-",
                  "drained bodies: their laws see effective stress; those of the others see total stress, with undrained strengths. "
                  "Default all are drained"),
@@ -108,8 +108,8 @@ struct WaterSpec {
       problems.emplace_back("give bodies, which are drained, or undrained, not both");
     if (!table && !flow)
       problems.emplace_back("missing key \"table\": the water table, where the pore pressure is zero");
-    if (flow && suction > 0)
-      problems.emplace_back("suction belongs to water at rest: where water flows, flow.bodies[].retention says what it does");
+    if (!table && flow && suction > 0)
+      problems.emplace_back("suction grows with the height above the water table: give a table, or leave suction out");
   }
 };
 

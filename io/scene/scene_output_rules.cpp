@@ -105,8 +105,12 @@ class OutputRules : private SceneRuleBase {
     for (std::size_t i = 0; i < walls.size(); ++i)
       note(fmt::format("boundaries[{}]", i), "on", walls[i], columns(reaction_columns(), walls[i]));
     for (std::size_t i = 0; i < history.points.size(); ++i)
-      if (const PointSpec& point = history.points[i]; is_first(history.points, i))
-        note(fmt::format("outputs.history.points[{}]", i), "name", point.name, columns(point_columns(), point.name));
+      if (const PointSpec& point = history.points[i]; is_first(history.points, i)) {
+        const std::string path = fmt::format("outputs.history.points[{}]", i);
+        note(path, "name", point.name, columns(point_columns(), point.name));
+        if (scene_.water && scene_.water->flow)
+          note(path, "name", point.name, columns(point_water_columns(), point.name));
+      }
     for (std::size_t i = 0; i < history.fronts.size(); ++i)
       if (const FrontSpec& front = history.fronts[i]; is_first(history.fronts, i))
         note(fmt::format("outputs.history.fronts[{}]", i), "name", front.name, columns(front_columns(), front.name));

@@ -65,6 +65,18 @@ class BoundaryConditions {
   Mat<D> free_changes(NodeOfField at, const Vec<D>& v) const;
   /// Adds an impulse [N s] that a condition of the node exerts on it to those of this step.
   void react(Index node, const Vec<D>& impulse);
+  /// Calls f(node, condition, share) for the nodes of dashpots that act: the node keeps that share of an impulse in the present step.
+  template <class F>
+  void for_each_dashpot(const Nodes<D>& nodes, F&& f) const
+  {
+    if (phase_.begun)
+      dashpots_.for_each_share(nodes, f);
+  }
+  /// Adds an impulse [N s] of the dashpots of a condition on a node to those of this step.
+  void dashpots_react(Index condition, const Vec<D>& place, const Vec<D>& impulse)
+  {
+    pushed_[static_cast<std::size_t>(condition)].add({impulse, moment<D>(place, impulse)});
+  }
   /// Calls f(node) for each node with conditions.
   template <class F>
   void for_each_node(F&& f) const

@@ -76,7 +76,9 @@ void Dashpots<D>::apply(std::span<const BoundaryCondition<D>> conditions, const 
             }
           },
           conditions[static_cast<std::size_t>(dashpot.condition)].kind);
-    const Vec<D> by = inertia.inverse() * momentum - motion.v;
+    const Mat<D> mobility = inertia.inverse();
+    const Vec<D> by = mobility * momentum - motion.v;
+    at.share = mass * mobility;
     motion.v += by, motion.change += by;
     at.impulse = mass * by;
   }

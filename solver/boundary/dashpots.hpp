@@ -42,6 +42,15 @@ class Dashpots {
         f(DashpotImpulse<D>{at.node, at.dashpots.front().condition, at.place, at.impulse, at.waves});
   }
 
+  /// Calls f(node, condition, share) for the active nodes on this rank: the node keeps that share of an impulse in the present step.
+  template <class F>
+  void for_each_share(const Nodes<D>& nodes, F&& f) const
+  {
+    for (const DashpotNode& at : nodes_)
+      if (nodes.active[static_cast<std::size_t>(at.node)])
+        f(at.node, at.dashpots.front().condition, at.share);
+  }
+
   /// Whether the reactions read from a checkpoint have the size for these nodes.
   bool fits() const noexcept { return reactions_known_ ? reaction_.size() == D * n_nodes_ : reaction_.empty(); }
   void continue_from(const Dashpots& earlier) { reactions_known_ = earlier.reactions_known_, reaction_ = earlier.reaction_; }
@@ -58,6 +67,7 @@ class Dashpots {
     std::vector<Dashpot<D>> dashpots;
     bool counted = true;              ///< false on ranks with a copy of the node
     Vec<D> impulse = Vec<D>::Zero();  ///< impulse in the present step [N s]
+    Mat<D> share = Mat<D>::Zero();    ///< part of an impulse on the node that it keeps in this step; the dashpots take the rest
     Real waves{};                     ///< energy of incident waves in the present step [J]
   };
   void find_reactions(Communicator& ranks, const Nodes<D>& nodes);

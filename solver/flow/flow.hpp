@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -33,6 +34,13 @@ struct Retention {
     const Real ratio = std::pow(-p / entry, exponent), m = 1 - 1 / exponent;
     return (1 - residual) * m * exponent * ratio / (-p) * std::pow(1 + ratio, -m - 1);
   }
+  /// What takes the place of dS/dp where the pressure goes from one value to another: the larger one of the slopes of the chord and at its end,
+  /// as the slope alone vanishes where pores begin to drain.
+  Real capacity(Real from, Real to) const noexcept
+  {
+    const Real change = to - from, chord = std::abs(change) > Real{1e-9} * entry ? (saturation(to) - saturation(from)) / change : 0;
+    return std::max(capacity(to), chord);
+  }
   /// The permeability over that of full pores.
   Real conductance(Real p) const noexcept
   {
@@ -56,6 +64,16 @@ struct FlowOfBody {
   Real porosity_at(Real ratio) const noexcept { return std::clamp(1 - (1 - porosity) / ratio, Real{1e-3}, Real{0.999}); }
   /// The part of total stress that a pressure of the water makes [Pa]: Biot's coefficient and, as Bishop's, the saturation times the pressure.
   Real stress_of(Real p) const noexcept { return biot * retention.saturation(p) * p; }
+  /// The volume of water that a volume of a porosity takes up [-] while the pressure goes from one value to another, and its slope [1/Pa].
+  Real stored(Real porosity_now, Real from, Real to) const noexcept
+  {
+    const Real full = retention.saturation(from);
+    return porosity_now * (retention.saturation(to) - full + full / bulk_modulus * (to - from));
+  }
+  Real storage(Real porosity_now, Real from, Real to) const noexcept
+  {
+    return porosity_now * (retention.saturation(from) / bulk_modulus + retention.capacity(from, to));
+  }
   /// k = k_0 n^3 / (1 - n)^2 over the same of n_0 [m/s].
   Real permeability_at(Real n) const noexcept
   {
@@ -83,6 +101,8 @@ struct Flow {
   std::vector<FlowOfBody> bodies;  ///< empty without flow
   std::vector<HeadBoundary> heads;
   std::vector<InflowBoundary> inflows;
+  std::optional<Table> rain;   ///< volume per horizontal area and time on the surface of the bodies [m/s]
+  Table pace;                  ///< how many times faster water flows, in time
   bool surface_drains = true;  ///< whether the pressure is zero at the surface of the bodies
   Real unit_weight{};          ///< of water [N/m^3]
 
@@ -92,6 +112,10 @@ struct Flow {
     return std::ranges::any_of(bodies, [](const FlowOfBody& one) { return one.flows && one.retention.entry > 0; });
   }
   bool flows(Index body) const noexcept { return any() && bodies[static_cast<std::size_t>(body)].flows; }
+  /// The pores of a body through which water flows, or nullptr.
+  const FlowOfBody* pores_of(std::size_t body) const noexcept { return any() && bodies[body].flows ? &bodies[body] : nullptr; }
+  /// The part of total stress that a pressure of the water in a body makes [Pa].
+  Real stress_of(Index body, Real p) const noexcept { return flows(body) ? bodies[static_cast<std::size_t>(body)].stress_of(p) : p; }
 };
 
 /// The part on one of several ranks, with its numbers of nodes.

@@ -9,17 +9,18 @@ namespace {
 /// Of the projection of pressures, over the compressibility of the skeleton for plane waves.
 constexpr Real projection = 2;
 constexpr int most_iterations = 2000;
-/// A node is at the surface of the bodies if these shares of the cells around, and of one of them, are not exceeded.
-constexpr Real full_around = 0.75, full_cell = 0.5;
+/// A node is at the surface of the bodies if this share of the cells around is not exceeded, and Rain::full_cell of one of them.
+constexpr Real full_around = 0.75;
 
 }  // namespace
 
 template <int D>
-FlowSystem<D>::FlowSystem(const Mesh<D>& mesh) : at_(to_size(mesh.n_nodes()), NodePressure::nothing), coarse_(mesh)
+FlowSystem<D>::FlowSystem(const Mesh<D>& mesh)
+    : at_(to_size(mesh.n_nodes()), NodePressure::nothing), storage_(at_.size()), rain_(at_.size()), coarse_(mesh)
 {
   const std::size_t n = at_.size(), entries = mesh.ring_of_node().item.size();
-  for (auto* all : {&change_, &right_, &given_, &weight_, &inflow_, &squeezed_, &residual_, &direction_, &image_, &conditioned_, &diagonal_,
-                    &lightness_})
+  for (auto* all : {&before_, &change_, &right_, &given_, &weight_, &inflow_, &squeezed_, &residual_, &direction_, &image_, &conditioned_,
+                    &diagonal_, &lightness_})
     all->resize(n);
   free_.assign(n, Mat<D>::Identity());
   force_.assign(n, Vec<D>::Zero()), velocity_.assign(n, Vec<D>::Zero());
@@ -65,7 +66,7 @@ void FlowSystem<D>::find_rows(const FlowModel<D>& m, const FlowCells<D>& cells, 
         const Real darcy = row.mobility * gradients[a].dot(gradients[b]);
         const Real within = ((a == b ? 2 : 1) / (n_corners * (n_corners + 1)) - 1 / (n_corners * n_corners)) * projection * row.compliance;
         darcy_[k] += darcy;
-        matrix_[k] += within + step.dt * darcy + (a == b ? row.storage / n_corners : 0);
+        matrix_[k] += within + step.dt * darcy + (a == b ? row.storage[a] : 0);
         push_[k] += row.biot / n_corners * gradients[a];
         divergence_[k] += row.biot / n_corners * gradients[b];
       }
@@ -101,7 +102,7 @@ void FlowSystem<D>::find_given_pressures(const FlowModel<D>& m, const FlowCells<
         filled += cells[c].filled, size += mesh.volume(c);
         least = std::min(least, cells[c].filled / mesh.volume(c));
       }
-      if (filled < full_around * size && least < full_cell)
+      if (filled < full_around * size && least < Rain<D>::full_cell)
         drain(n);
     });
   const Real weight = step.weight.norm();
@@ -125,6 +126,10 @@ void FlowSystem<D>::find_responses(const FlowModel<D>& m, const FlowStep<D>& ste
   send(lightness_);
   m.conditions.for_each_node(
       [&](Index n) { free_[to_size(n)] = m.conditions.free_changes(nodes.of_field(n), nodes.motion[to_size(n)].v); });
+  m.conditions.for_each_dashpot(nodes, [&](Index n, Index, const Mat<D>& share) {
+    const Mat<D> free = free_[to_size(n)];
+    free_[to_size(n)] = free * share * free;
+  });
 }
 
 template <int D>
@@ -180,12 +185,53 @@ Real FlowSystem<D>::dot(const FlowModel<D>& m, const std::vector<Real>& x, const
   return sum.value();
 }
 
-/// Conjugate gradients [Hestenes & Stiefel 1952] from no change but the given ones on.
 template <int D>
-std::vector<Real>& FlowSystem<D>::solve(const FlowModel<D>& m, const FlowStep<D>& step, FlowLedger& ledger)
+void FlowSystem<D>::take_contents(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step)
+{
+  m.field.nodes.in_use.for_each([&](Index n) {
+    if (!m.own.has(n) || !sees_water(n))
+      return;
+    const NodeStorage before = storage_[n];
+    storage_.find(m.mesh, cells, change_, n);
+    const auto ring = m.mesh.ring_of_node()[n];
+    const auto place = std::ranges::lower_bound(ring, n) - ring.begin();
+    matrix_[to_size(m.mesh.ring_of_node().begin[to_size(n)]) + to_size(static_cast<Index>(place))] += storage_[n].slope - before.slope;
+    diagonal_[to_size(n)] += storage_[n].slope - before.slope;
+    right_[to_size(n)] -= storage_[n].surplus - before.surplus;
+  });
+  prepare_coarse(m, step);
+}
+
+/// Pressures that alternate between two states are met half-way.
+template <int D>
+void FlowSystem<D>::solve_for_contents(const FlowModel<D>& m, const FlowStep<D>& step, FlowLedger& ledger,
+                                       const std::function<const FlowCells<D>&()>& find_contents)
+{
+  constexpr int most = 60, straight = 10;
+  const NodesInUse& in_use = m.field.nodes.in_use;
+  in_use.for_each([&](Index n) { before_[to_size(n)] = 0; });
+  for (int again = 0;; ++again) {
+    send(change_);
+    const FlowCells<D>* cells = &find_contents();
+    if (storage_.has_contents_of(m, *cells, change_, weight_, [&](Index n) { return sees_water(n); }) || again == most)
+      return;
+    if (again >= straight) {
+      in_use.for_each([&](Index n) { change_[to_size(n)] = (change_[to_size(n)] + before_[to_size(n)]) / 2; });
+      cells = &find_contents();
+    }
+    in_use.for_each([&](Index n) { before_[to_size(n)] = change_[to_size(n)]; });
+    take_contents(m, *cells, step);
+    solve(m, step, true, ledger);
+  }
+}
+
+/// Conjugate gradients [Hestenes & Stiefel 1952] from no change but the given ones on, or from what they have found before.
+template <int D>
+std::vector<Real>& FlowSystem<D>::solve(const FlowModel<D>& m, const FlowStep<D>& step, bool again, FlowLedger& ledger)
 {
   const NodesInUse& in_use = m.field.nodes.in_use;
-  in_use.for_each([&](Index n) { change_[to_size(n)] = at_[to_size(n)] == NodePressure::given ? given_[to_size(n)] : 0; });
+  if (!again)
+    in_use.for_each([&](Index n) { change_[to_size(n)] = at_[to_size(n)] == NodePressure::given ? given_[to_size(n)] : 0; });
   multiply(m, step.dt, change_);
   in_use.for_each([&](Index n) { residual_[to_size(n)] = is_unknown(n) ? right_[to_size(n)] - image_[to_size(n)] : 0; });
   const auto precondition = [&] {
@@ -194,7 +240,9 @@ std::vector<Real>& FlowSystem<D>::solve(const FlowModel<D>& m, const FlowStep<D>
     return dot(m, residual_, conditioned_);
   };
   Real now = precondition();
-  const Real begin = now, enough = 0.81 * FlowLedger::tolerance * FlowLedger::tolerance * begin;
+  if (!again)
+    begin_ = now, ledger.iterations = 0;
+  const Real enough = 0.81 * FlowLedger::tolerance * FlowLedger::tolerance * begin_;
   in_use.for_each([&](Index n) { direction_[to_size(n)] = conditioned_[to_size(n)]; });
   int iterations = 0;
   for (; now > enough && iterations < most_iterations; ++iterations) {
@@ -210,8 +258,8 @@ std::vector<Real>& FlowSystem<D>::solve(const FlowModel<D>& m, const FlowStep<D>
     now = next;
     in_use.for_each([&](Index n) { direction_[to_size(n)] = conditioned_[to_size(n)] + share * direction_[to_size(n)]; });
   }
-  ledger.iterations = iterations, ledger.total_iterations += iterations;
-  ledger.residual = begin > 0 ? std::sqrt(now / begin) : begin;
+  ledger.iterations += iterations, ledger.total_iterations += iterations;
+  ledger.residual = begin_ > 0 ? std::sqrt(now / begin_) : begin_;
   return change_;
 }
 
@@ -228,8 +276,15 @@ void FlowSystem<D>::change_velocities(const FlowModel<D>& m, const FlowStep<D>& 
     if (nodes.active[to_size(n)] != 0)
       nodes.sum[to_size(n)].force += force_[to_size(n)];
   });
+  std::vector<Index> with_dashpots;
+  m.conditions.for_each_dashpot(nodes, [&](Index n, Index condition, const Mat<D>&) {
+    with_dashpots.push_back(n);
+    if (sees_water(n) && m.own.has(n))
+      m.conditions.dashpots_react(condition, m.mesh.node(n), step.kick * (free_[to_size(n)] * force_[to_size(n)] - force_[to_size(n)]));
+  });
+  std::ranges::sort(with_dashpots);
   m.conditions.for_each_node([&](Index n) {
-    if (sees_water(n)) {
+    if (sees_water(n) && !std::ranges::binary_search(with_dashpots, n)) {
       const Vec<D> force = nodes.active[to_size(n)] != 0 ? force_[to_size(n)] : force_at(m.mesh, n, change);
       m.conditions.react(n, step.kick * (free_[to_size(n)] * force - force));
     }
@@ -269,6 +324,7 @@ void FlowSystem<D>::record(const FlowModel<D>& m, const FlowCells<D>& cells, con
     auto k = to_size(m.mesh.ring_of_node().begin[to_size(u)]);
     Real darcy = 0;
     one.squeezed = squeezed_[to_size(u)];
+    one.stored = (m.flow.any_retention() ? storage_[u].content - storage_[u].slope * change[to_size(u)] : 0);
     for (const Index n : m.mesh.ring_of_node()[u]) {
       one.stored += (matrix_[k] - step.dt * darcy_[k]) * change[to_size(n)];
       one.squeezed += step.dt * divergence_[k].dot(velocity_[to_size(n)]);
@@ -289,7 +345,8 @@ void FlowSystem<D>::record(const FlowModel<D>& m, const FlowCells<D>& cells, con
 
 /// What flows in, how much the velocities that the step has found squeeze the pores, and what is left to the changes of pressure.
 template <int D>
-void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowStep<D>& step, const std::vector<Real>& pressure)
+void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step,
+                                    const std::vector<Real>& pressure)
 {
   const NodesInUse& in_use = m.field.nodes.in_use;
   in_use.for_each([&](Index n) { velocity_[to_size(n)] = m.own.has(n) ? m.field.nodes.motion[to_size(n)].v : Vec<D>(Vec<D>::Zero()); });
@@ -297,7 +354,10 @@ void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowStep<D>& st
   for (const InflowBoundary& inflow : m.flow.inflows)
     for (std::size_t k = 0; k < inflow.nodes.size(); ++k)
       if (const Index n = inflow.nodes[k]; sees_water(n))
-        inflow_[to_size(n)] += step.dt * inflow.rate(step.end) * inflow.area[k];
+        inflow_[to_size(n)] += step.dt * m.flow.pace(step.end) * inflow.rate(step.end) * inflow.area[k];
+  if (m.flow.rain)
+    rain_.add(
+        m, cells, step, [&](Index n) { return sees_water(n); }, inflow_, [&](std::vector<std::uint8_t>& open) { send(open); });
   in_use.for_each([&](Index u) {
     if (!sees_water(u))
       return;
@@ -312,7 +372,7 @@ void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowStep<D>& st
       ++k;
     }
     squeezed_[to_size(u)] = squeezed;
-    right_[to_size(u)] = weight_[to_size(u)] + inflow_[to_size(u)] - squeezed - darcy;
+    right_[to_size(u)] = weight_[to_size(u)] + inflow_[to_size(u)] - squeezed - darcy - storage_[u].surplus;
     diagonal_[to_size(u)] = diagonal;
   });
 }
@@ -321,12 +381,23 @@ template <int D>
 void FlowSystem<D>::prepare(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure)
 {
   find_rows(m, cells, step);
+  m.field.nodes.in_use.for_each([&](Index n) { change_[to_size(n)] = 0; });
+  m.field.nodes.in_use.for_each([&](Index n) {
+    if (m.own.has(n) && sees_water(n))
+      storage_.find(m.mesh, cells, change_, n);
+  });
   find_responses(m, step);
-  find_right_side(m, step, pressure);
+  find_right_side(m, cells, step, pressure);
   find_given_pressures(m, cells, step, pressure);
-  std::vector<NodePressure> around = at_;
-  send(around);
-  coarse_.prepare(m.ranks, m.mesh, m.own, around, matrix_, push_, free_, lightness_, step.dt);
+  around_ = at_;
+  send(around_);
+  prepare_coarse(m, step);
+}
+
+template <int D>
+void FlowSystem<D>::prepare_coarse(const FlowModel<D>& m, const FlowStep<D>& step)
+{
+  coarse_.prepare(m.ranks, m.mesh, m.own, around_, matrix_, push_, free_, lightness_, step.dt);
 }
 
 template class FlowSystem<2>;

@@ -1,7 +1,11 @@
 #pragma once
 // The linear system of the pore pressure in one step.
+#include <functional>
+
 #include "solver/flow/coarse_pressure.hpp"
 #include "solver/flow/pore_pressure.hpp"
+#include "solver/flow/pore_storage.hpp"
+#include "solver/flow/rain.hpp"
 
 namespace talus {
 
@@ -27,8 +31,12 @@ class FlowSystem {
 
   /// Finds rows, given pressures and how velocities answer, for the pressures p0 at nodes that see water.  Collective.
   void prepare(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure);
-  /// Finds p1 - p0; adds the iterations and the residual to the ledger.  Collective.
-  std::vector<Real>& solve(const FlowModel<D>& m, const FlowStep<D>& step, FlowLedger& ledger);
+  /// Finds p1 - p0, from the one found before on if `again`; adds the iterations and the residual to the ledger.  Collective.
+  std::vector<Real>& solve(const FlowModel<D>& m, const FlowStep<D>& step, bool again, FlowLedger& ledger);
+  /// Solves the system again, until what pores take up is that of the pressures found.  find_contents() returns the cells with the contents
+  /// of the changes of pressure that solve() has returned.  Collective.
+  void solve_for_contents(const FlowModel<D>& m, const FlowStep<D>& step, FlowLedger& ledger,
+                          const std::function<const FlowCells<D>&()>& find_contents);
   /// Gives the nodes the velocities that a change of pressure makes, and boundaries what they take of its forces.  Collective.
   void change_velocities(const FlowModel<D>& m, const FlowStep<D>& step, std::vector<Real>& change, ExactSums<Real>& work);
   /// Adds what has flowed over the step to the balance, with the pressures of its end.  Collective.
@@ -46,7 +54,9 @@ class FlowSystem {
   void find_rows(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step);
   void find_given_pressures(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure);
   void find_responses(const FlowModel<D>& m, const FlowStep<D>& step);
-  void find_right_side(const FlowModel<D>& m, const FlowStep<D>& step, const std::vector<Real>& pressure);
+  void find_right_side(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure);
+  void take_contents(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step);
+  void prepare_coarse(const FlowModel<D>& m, const FlowStep<D>& step);
   /// The force of pressures x on a node of this rank [N].
   Vec<D> force_at(const Mesh<D>& mesh, Index n, const std::vector<Real>& x) const;
   /// All such forces, and the changes of velocity by them.
@@ -58,16 +68,20 @@ class FlowSystem {
   bool is_unknown(Index n) const noexcept { return at_[static_cast<std::size_t>(n)] == NodePressure::unknown; }
 
   HaloExchange copies_;
-  std::vector<NodePressure> at_;
+  std::vector<NodePressure> at_, around_;     ///< around_: of the nodes of other ranks too
   std::vector<Real> change_, right_, given_;  ///< p1 - p0; the right-hand side; given changes
+  std::vector<Real> before_;                  ///< change_ of the system that was solved last
   std::vector<Real> weight_, inflow_;         ///< dt G and dt Q
   std::vector<Real> squeezed_;                ///< dt B^T v, of the velocities that the step found
+  Real begin_{};                              ///< norm of the residual without a change of pressure
   std::vector<Real> residual_, direction_, image_, conditioned_, diagonal_;
   SparseRows<Real> matrix_, darcy_;       ///< S + dt H, and H, by the entries of rings of nodes
   SparseRows<Vec<D>> push_, divergence_;  ///< B, and B^T
   std::vector<Mat<D>> free_;              ///< C
   std::vector<Real> lightness_;           ///< kick / m of nodes with a motion of their own [s/kg], else 0
   std::vector<Vec<D>> force_, velocity_;
+  PoreStorage<D> storage_;
+  Rain<D> rain_;
   CoarsePressure<D> coarse_;
 };
 

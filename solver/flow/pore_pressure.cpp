@@ -6,12 +6,19 @@ namespace talus {
 
 template <int D>
 PorePressure<D>::PorePressure(const Mesh<D>& mesh)
-    : pressure_(to_size(mesh.n_nodes())), seen_(pressure_.size()), cells_(mesh), system_(std::make_unique<FlowSystem<D>>(mesh))
+    : pressure_(to_size(mesh.n_nodes())),
+      trial_(pressure_.size()),
+
+      seen_(pressure_.size()),
+      cells_(mesh),
+      system_(std::make_unique<FlowSystem<D>>(mesh))
 {}
 
 template <int D>
 PorePressure<D>::PorePressure(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own)
     : pressure_(to_size(mesh.n_nodes())),
+      trial_(pressure_.size()),
+
       seen_(pressure_.size()),
       cells_(ranks, mesh, subdomain),
       system_(std::make_unique<FlowSystem<D>>(ranks, mesh, subdomain, own))
@@ -45,12 +52,21 @@ void PorePressure<D>::advance(const FlowModel<D>& m, const std::vector<Material>
                               const FlowStep<D>& step, FlowLedger& ledger, ExactSums<Real>& work)
 {
   const NodesInUse& in_use = m.field.nodes.in_use;
-  cells_.sum(m.mesh, m.flow, materials, strips);
+  cells_.sum(m.mesh, m.flow, materials, strips, m.flow.pace(step.end));
   read_particles(m.mesh, m.own, in_use);
   system_->send(pressure_);
   system_->send(seen_);
+  const bool retains = m.flow.any_retention();
+  if (retains)
+    cells_.find_contents(m.mesh, m.flow, strips, pressure_);
   system_->prepare(m, cells_, step, pressure_);
-  std::vector<Real>& change = system_->solve(m, step, ledger);
+  std::vector<Real>& change = system_->solve(m, step, false, ledger);
+  if (retains)
+    system_->solve_for_contents(m, step, ledger, [&]() -> const FlowCells<D>& {
+      in_use.for_each([&](Index n) { trial_[to_size(n)] = pressure_[to_size(n)] + change[to_size(n)]; });
+      cells_.find_contents(m.mesh, m.flow, strips, trial_);
+      return cells_;
+    });
   system_->change_velocities(m, step, change, work);
   in_use.for_each([&](Index n) { pressure_[to_size(n)] += change[to_size(n)]; });
   system_->send(pressure_);

@@ -61,8 +61,11 @@ void restrict_to(const Subdomain& subdomain, MeshTraction<D>& load)
     if (const Index node = subdomain.local_node(load.node[k]); node != none) {
       load.node[count] = node;
       load.area[count] = load.area[k];
+      if (!load.height.empty())
+        load.height[count] = load.height[k];
       load.measure[count++] = load.measure[k];
     }
+  load.height.resize(load.height.empty() ? 0 : count);
   load.node.resize(count), load.area.resize(count), load.measure.resize(count);
 }
 
@@ -116,7 +119,8 @@ void for_each_mesh_force(const Loads<D>& loads, Real time, Real ramp, F&& f)
   for (const auto& load : loads.on_mesh) {
     const Real factor = ramp * load.table(time);
     for (std::size_t k = 0; k < load.node.size(); ++k)
-      f(static_cast<std::size_t>(load.node[k]), Vec<D>(factor * (load.measure[k] * load.traction - load.pressure * load.area[k])));
+      f(static_cast<std::size_t>(load.node[k]),
+        Vec<D>(factor * (load.measure[k] * load.traction - load.pressure_at(k, time) * load.area[k])));
   }
 }
 

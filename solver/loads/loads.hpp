@@ -57,6 +57,16 @@ struct MeshTraction {
   std::vector<Index> node;    ///< ascending
   std::vector<Vec<D>> area;   ///< share of the outward area vector [m^(D-1)]
   std::vector<Real> measure;  ///< share of the area [m^(D-1)]
+  /// Open water: a pressure of unit_weight [N/m^3] times the depth below a level.
+  Real unit_weight{};
+  Table level;               ///< its elevation in time [m]
+  std::vector<Real> height;  ///< of the nodes [m]; empty without open water
+
+  /// The pressure at a node [Pa].
+  Real pressure_at(std::size_t k, Real time) const noexcept
+  {
+    return height.empty() ? pressure : pressure + unit_weight * std::max(level(time) - height[k], Real{0});
+  }
 };
 
 template <int D>

@@ -56,18 +56,19 @@ struct PoreWater {
 };
 
 /// Sets the pore pressure at their present positions of the bodies that follow the table; the effective stress stays.  Directly after a step
-/// this changes nothing.
-template <int D, class FollowsTable>
-void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bodies, FollowsTable&& follows_table, Particles<D>& particles)
+/// this changes nothing.  stress_of(body, pressure): the part of it in total stress.
+template <int D, class FollowsTable, class StressOf>
+void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bodies, FollowsTable&& follows_table, StressOf&& stress_of,
+          Particles<D>& particles)
 {
   for (std::size_t b = 0; b < bodies.size(); ++b)
     if (follows_table(static_cast<Index>(b)))
       parallel_for(bodies[b].size(), [&](Index i) {
         const auto p = static_cast<std::size_t>(bodies[b].begin + i);
-        const Real before = particles.pore[p];
-        particles.pore.set(p, now.pressure(mesh, particles.cell[p], particles.x[p]));
+        const Real before = particles.pore[p], pressure = now.pressure(mesh, particles.cell[p], particles.x[p]);
+        particles.pore.set(p, stress_of(static_cast<Index>(b), pressure));
         if (!particles.water.empty()) {
-          particles.water.set(p, particles.pore[p]);
+          particles.water.set(p, pressure), particles.water_at_rest.set(p, pressure);
           particles.water_gradient.set(p, now.gradient(mesh, particles.cell[p], particles.x[p]));
         }
         particles.stress.set(p, add_diagonal(particles.stress[p], before - particles.pore[p]));

@@ -45,6 +45,7 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
   if (wanted.flow && particles.water.empty()) {
     particles.water = particles.pore;
     particles.water_gradient.assign(n, Vec<D>::Zero());
+    particles.water_at_rest.assign(n, 0);
   }
   if (wanted.side && particles.side.empty())
     particles.side.assign(n, 0);

@@ -25,8 +25,8 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, water, water_gradient, side,
-      reference, since_reference;
+  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, water, water_gradient,
+      water_at_rest, side, reference, since_reference;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place.
@@ -70,6 +70,7 @@ class StripLayout {
                .pore = at("pore_pressure"),
                .water = at("water_pressure"),
                .water_gradient = at("water_gradient"),
+               .water_at_rest = at("water_at_rest"),
                .side = at("side"),
                .reference = at("reference"),
                .since_reference = at("since_reference")};
@@ -163,7 +164,7 @@ struct StripColumns {
   StripColumn<Mat<D>> L{}, C{};  ///< in the strip only where gradients are kept; C is empty where the affine field is L
   StripColumn<Mat3> F{};
   StripColumn<Sym3> stress{};
-  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{}, water{}, side{};
+  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{}, water{}, water_at_rest{}, side{};
   StripColumn<Vec<D>> water_gradient{};          ///< of the pressure of water that flows [Pa/m]
   StripColumn<Vec<D>> applied{};                 ///< forces of loads at the present positions [N]
   StripColumn<Real> volume_ratio{}, averaged{};  ///< of averaged volumes: see StressStrip; `averaged` lasts for a step

@@ -23,16 +23,20 @@ StripColumn<Real> find_pore_pressures(const Model<D>& m, Index body, const Strip
     const Vec<D> gradient = known ? m.work.flow->gradient(mesh, cell) : Vec<D>(Vec<D>::Zero());
     for (std::size_t i = run.begin; i < run.end; ++i) {
       Real& after = scratch.pore_after[i];
+      const Vec<D> x = moves ? columns.before.of(i) : columns.x.of(i);
+      const Real at_rest = water->pressure(mesh, cell, x);
+      if (flows)
+        columns.water_at_rest.set(i, at_rest);
       if (known) {
-        const Real p = m.work.flow->at(mesh, cell, columns.before.of(i));
+        const Real p = m.work.flow->at(mesh, cell, x);
         columns.water.set(i, p), columns.water_gradient.set(i, gradient);
-        after = m.problem.flow.bodies[to_size(body)].stress_of(p);
+        after = m.problem.flow.stress_of(body, p);
       } else if (moves || stays) {
         after = columns.pore.of(i);
       } else {
-        after = water->pressure(mesh, cell, columns.x.of(i));
+        after = m.problem.flow.stress_of(body, at_rest);
         if (flows)
-          columns.water.set(i, after), columns.water_gradient.set(i, water->gradient(mesh, cell, columns.x.of(i)));
+          columns.water.set(i, at_rest), columns.water_gradient.set(i, water->gradient(mesh, cell, x));
       }
     }
   }

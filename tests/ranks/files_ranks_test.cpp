@@ -122,10 +122,10 @@ TEST_F(Files, AFieldThatThereIsNotIsNoColumnOfZeros)
 {
   const RankOfRun run(10);
   const auto rows = rows_by_id(run.state.particles);
-  EXPECT_THROW(particle_column(run.state, rows, "sped"), std::invalid_argument);
+  EXPECT_THROW(particle_column(run.problem, run.state, rows, "sped"), std::invalid_argument);
   EXPECT_THROW(node_column(run.view(), "stress"), std::invalid_argument);
-  const Column strain = particle_column(run.state, rows, "plastic_strain");  // of the law of the first body alone
-  const Column opened = particle_column(run.state, rows, "opened_volume");   // of no law in this run, but a stage may bring one
+  const Column strain = particle_column(run.problem, run.state, rows, "plastic_strain");  // of the law of the first body alone
+  const Column opened = particle_column(run.problem, run.state, rows, "opened_volume");  // of no law in this run, but a stage may bring one
   EXPECT_EQ(strain.values.size(), rows.size());
   EXPECT_EQ(opened.values, std::vector<float>(rows.size(), 0));
 }

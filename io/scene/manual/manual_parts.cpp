@@ -148,6 +148,7 @@ class Manual {
       add_columns("Columns of each of the bodies:", body_columns(), "BODY", part);
     } else if (&type == &struct_type<PointSpec>()) {
       add_columns("Columns:", point_columns(), "NAME", part);
+      add_columns("Columns where water flows:", point_water_columns(), "NAME", part);
     } else if (&type == &struct_type<FrontSpec>()) {
       add_columns("Columns:", front_columns(), "NAME", part);
     } else if (&type == &struct_type<WallSpec>()) {

@@ -1,6 +1,9 @@
 // Flow of pore water in a scene: what set-up refuses, what it warns of, and what a run writes.
 #include <gmock/gmock.h>
 
+#include <numeric>
+
+#include "io/output/vtk_layout.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::flow_of_scene_test {
@@ -50,6 +53,58 @@ TEST_F(FlowOfScene, WarnsOfWhatIsHardlyMeant)
   EXPECT_THAT(check("permeability: 1.0e-3", "drained: [y_max]", table).err, HasSubstr(unsafe));
   EXPECT_THAT(check("permeability: 1.0e-3, retention: {entry: 1.0e4, exponent: 2}", "drained: [y_max]", table).err, Not(HasSubstr(unsafe)));
   EXPECT_EQ(check("permeability: 1.0e-3", "drained: [y_max]").err, "");
+}
+
+/// The mean of the last rows of a column.
+Real mean_of_last(const HistoryTable& table, std::string_view column, std::size_t rows)
+{
+  const auto values = table[column].value();
+  return std::accumulate(values.end() - static_cast<std::ptrdiff_t>(rows), values.end(), 0.0) / static_cast<Real>(rows);
+}
+
+/// The values of a field in a file of particles, by component.
+std::vector<Real> field_of(const std::filesystem::path& file, std::string_view name)
+{
+  const VtkLayout layout(file, "PolyData");
+  const VtkArray* array = layout.find("PointData", name);
+  return array != nullptr ? layout.numbers(*array) : std::vector<Real>();
+}
+
+/// Water that stands above a table at the start, with a suction that grows up to 2 kPa; then it seeps down.
+TEST_F(FlowOfScene, BeginsWithSuctionAndWritesWhatTheWaterDoes)
+{
+  write_scene("permeability: 1.0e-3, retention: {entry: 2.0e3, exponent: 2}", "pace: [[0, 2]]",
+              "table: {elevation: 0.5}, suction: 2.0e3, ");
+  const std::string fields = "pore_pressure, excess_pore_pressure, saturation, seepage_velocity, stress, effective_stress";
+  ASSERT_EQ(talus("run layer.yaml --out out --set 'outputs.particles.fields=[" + fields + "]'").code, 0);
+  const auto start = folder_ / "out" / "particles_0000.vtp";
+  const auto pressure = field_of(start, "pore_pressure"), saturation = field_of(start, "saturation"), stress = field_of(start, "stress"),
+             effective = field_of(start, "effective_stress");
+  ASSERT_FALSE(pressure.empty());
+  EXPECT_NEAR(*std::ranges::min_element(pressure), -2e3, 1e-3);
+  EXPECT_GT(*std::ranges::max_element(pressure), 3e3);
+  for (std::size_t p = 0; p < pressure.size(); ++p) {
+    const Real full = pressure[p] < 0 ? 1 / std::sqrt(1 + std::pow(pressure[p] / 2e3, 2)) : 1;
+    EXPECT_NEAR(saturation[p], full, 1e-5);
+    EXPECT_NEAR(effective[6 * p] - stress[6 * p], full * pressure[p], 1e-2);  // Bishop
+  }
+  for (const Real excess : field_of(start, "excess_pore_pressure"))
+    EXPECT_EQ(excess, 0);
+  for (const Real speed : field_of(start, "seepage_velocity"))
+    EXPECT_EQ(speed, 0);
+  const auto later = folder_ / "out" / "particles_0001.vtp";
+  const auto excess = field_of(later, "excess_pore_pressure"), speed = field_of(later, "seepage_velocity");
+  EXPECT_GT(*std::ranges::max_element(excess), 5e3);  // of the load on top
+  EXPECT_GT(*std::ranges::max_element(speed), 1e-4);
+}
+
+/// Open water presses on the layer with its weight: its base carries both.
+TEST_F(FlowOfScene, OpenWaterIsALoad)
+{
+  write_scene("permeability: 1.0e-3", "heads: [{on: y_max, level: 3}]", "table: {elevation: 1}, ");
+  ASSERT_EQ(talus("run layer.yaml --out out --set time.end=0.3").code, 0);
+  const HistoryTable table = history("out");
+  EXPECT_NEAR(mean_of_last(table, "reaction_y_min_y", 100), 1e4 + 2000 * 9.81 + 2 * 9810, 0.05 * 5e4);
 }
 
 TEST_F(FlowOfScene, TakesUpALoadAtOnceAndKeepsAccountOfItsWater)

@@ -349,7 +349,9 @@ TEST(Scene, SaysHowWaterFlows)
   EXPECT_FALSE(flow.bodies[1].retention.has_value());
   EXPECT_EQ(flow.heads.at(0).level, 1.5);
   EXPECT_EQ(flow.inflow.at(0).table(1), 1);
-  EXPECT_EQ(flow.surface, SurfaceFlow::impermeable);
+  EXPECT_EQ(flow.rain.value().rate, 1e-6);
+  EXPECT_EQ(flow.pace(0), 100);
+  EXPECT_EQ(flow.surface, SurfaceFlow::drained);
 }
 
 TEST(Scene, ExamplesUseEveryKeyThereIs)

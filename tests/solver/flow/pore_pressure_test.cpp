@@ -1,94 +1,14 @@
 // Water that flows through pores: closed forms of consolidation and seepage, what must be kept, and water that is nearly incompressible.
-#include <gtest/gtest.h>
-
 #include <numbers>
 
-#include "tests/solver/blocks_of_particles.hpp"
+#include "tests/solver/flow/saturated_soil.hpp"
 
 namespace talus::pore_pressure_test {
 namespace {
 
+using namespace saturated_soil;
 using std::numbers::pi;
-using testing::add_body;
 using testing::close_off;
-using testing::rubber;
-using testing::unit_box;
-
-constexpr Real weight = 1e4;  // of water [N/m^3]
-
-/// A box of saturated soil.
-template <int D, class K = Projected<D>>
-Model<D> saturated(
-    Mesh<D> mesh, const FlowOfBody& pores, const std::function<bool(const Vec<D>&)>& inside,
-    const std::function<Vec<D>(const Vec<D>&)>& velocity = [](const Vec<D>&) { return Vec<D>(Vec<D>::Zero()); })
-{
-  auto m = make_model<K>(std::move(mesh));
-  add_body<D>(m, "soil", rubber(1e6, 0.2, 2000), D + 1, inside, velocity);
-  m.problem.water = {
-      .table = std::vector<Real>(static_cast<std::size_t>(m.problem.mesh.n_nodes()), -1), .drained = {1}, .unit_weight = weight};
-  m.problem.flow = {.bodies = {pores}, .heads = {}, .inflows = {}, .surface_drains = false, .unit_weight = weight};
-  return m;
-}
-template <int D>
-bool everywhere(const Vec<D>&)
-{
-  return true;
-}
-FlowOfBody pores(Real permeability, Real bulk_modulus)
-{
-  return {.flows = true, .porosity = 0.4, .permeability = permeability, .bulk_modulus = bulk_modulus, .retention = {}};
-}
-template <int D>
-std::vector<Index> nodes_on(const Mesh<D>& mesh, const std::string& facets)
-{
-  std::vector<Index> nodes;
-  const std::vector<Facet> all = mesh.facet_set(facets).value();
-  for (const Facet facet : all)
-    for (const Index n : mesh.nodes_of(facet))
-      nodes.push_back(n);
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
-}
-/// Holds all nodes, so that only water moves.
-template <int D>
-void hold_everything(Model<D>& m)
-{
-  std::vector<Index> all(static_cast<std::size_t>(m.problem.mesh.n_nodes()));
-  std::iota(all.begin(), all.end(), 0);
-  m.state.boundary.add({.name = "all", .kind = Fixed<D>{}}, m.problem.mesh, all);
-}
-/// Makes the model ready, with this pressure and gradient of its water.
-template <int D>
-void begin(Model<D>& m, auto&& pressure, const Vec<D>& gradient)
-{
-  m.state.boundary.finalize();
-  make_ready(m);
-  m.state.stage.flows = true;
-  auto& particles = m.state.particles;
-  for (std::size_t p = 0; p < particles.id.size(); ++p) {
-    particles.pore.set(p, pressure(particles.x[p])), particles.water.set(p, particles.pore[p]);
-    particles.stress.set(p, add_diagonal(particles.stress[p], -particles.pore[p]));
-    particles.water_gradient.set(p, gradient);
-  }
-}
-template <int D>
-void make_steps(Model<D>& m, int n, Real dt)
-{
-  for (int i = 0; i < n; ++i)
-    make_step(m, dt);
-  end_sweeps(m);
-  EXPECT_LE(m.state.flow.residual, FlowLedger::tolerance);
-}
-template <int D>
-Real rms(const Model<D>& m, auto&& exact)
-{
-  Real sum = 0;
-  const auto& particles = m.state.particles;
-  for (std::size_t p = 0; p < particles.id.size(); ++p)
-    sum += std::pow(particles.water[p] - exact(particles.x[p]), 2);
-  return std::sqrt(sum / static_cast<Real>(particles.id.size()));
-}
 
 /// Water of a first mode that drains to one side of soil that cannot move.
 template <int D>
@@ -208,6 +128,36 @@ TEST(PorePressure, LetsNoWaterInThroughADrySurface)
   make_steps(m, 100, 1);
   EXPECT_LT(rms(m, [](const Vec<2>& x) { return weight * (0.3 - x[1]); }), 1e-6 * weight);
   EXPECT_NEAR(m.state.flow.drained, 0, 1e-12);
+}
+
+/// Full pores without pressure, whose foot is opened: storage begins with zero, and all the same no water may vanish.
+template <int D>
+void loses_what_leaves(Real jitter)
+{
+  FlowOfBody soil = pores(1e-2, 1e9);
+  soil.retention = {2e3, 2, 0.2};
+  auto m = saturated<D>(unit_box<D>(D == 2 ? 8 : 4, jitter), soil, everywhere<D>);
+  hold_everything(m);
+  m.problem.loads.gravity = {-9.81 * Vec<D>::Unit(D - 1), {}};
+  const std::string foot = D == 2 ? "y_min" : "z_min";
+  m.problem.flow.heads.push_back({foot, nodes_on(m.problem.mesh, foot), true, {}});
+  begin<D>(
+      m, [](const Vec<D>&) { return 0; }, Vec<D>::Zero());
+  make_steps(m, 40, 0.05);
+  Real lost = 0;
+  const auto& particles = m.state.particles;
+  for (std::size_t p = 0; p < particles.id.size(); ++p)
+    lost += soil.porosity * particles.volume[p] * (1 - soil.retention.saturation(particles.water[p]));
+  EXPECT_GT(lost, 0.01);
+  EXPECT_NEAR(m.state.flow.drained, lost, 1e-4 * lost);
+  EXPECT_NEAR(m.state.flow.stored, -lost, 1e-4 * lost);
+}
+
+TEST(PorePressure, LosesNoWaterWherePoresBeginToDrain)
+{
+  loses_what_leaves<2>(0);
+  loses_what_leaves<2>(0.2);
+  loses_what_leaves<3>(0.2);
 }
 
 TEST(Retention, IsVanGenuchtens)
