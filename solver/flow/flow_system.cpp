@@ -295,54 +295,6 @@ void FlowSystem<D>::change_velocities(const FlowModel<D>& m, const FlowStep<D>& 
   });
 }
 
-namespace {
-
-/// Volumes of water [m^D] and energy [J] over a step.
-struct FlowSums {
-  Real inflow{}, drained{}, stored{}, squeezed{}, seepage{};
-  FlowSums& operator+=(const FlowSums& other) noexcept
-  {
-    inflow += other.inflow, drained += other.drained, stored += other.stored, squeezed += other.squeezed, seepage += other.seepage;
-    return *this;
-  }
-};
-
-}  // namespace
-
-template <int D>
-void FlowSystem<D>::record(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& change,
-                           const std::vector<Real>& pressure, FlowLedger& ledger) const
-{
-  ExactSums<FlowSums> sums;
-  add_ranges(m.field.nodes.in_use.own(), sums, [&](Index u) {
-    FlowSums one;
-    if (!sees_water(u))
-      return one;
-    Real lifted = 0;  // dt k/gamma w^2
-    for (const Index c : m.mesh.cells_of_node()[u])
-      lifted += step.dt * cells[c].mobility * step.weight.squaredNorm() / (D + 1);
-    auto k = to_size(m.mesh.ring_of_node().begin[to_size(u)]);
-    Real darcy = 0;
-    one.squeezed = squeezed_[to_size(u)];
-    one.stored = (m.flow.any_retention() ? storage_[u].content - storage_[u].slope * change[to_size(u)] : 0);
-    for (const Index n : m.mesh.ring_of_node()[u]) {
-      one.stored += (matrix_[k] - step.dt * darcy_[k]) * change[to_size(n)];
-      one.squeezed += step.dt * divergence_[k].dot(velocity_[to_size(n)]);
-      darcy += step.dt * darcy_[k] * pressure[to_size(n)];
-      ++k;
-    }
-    one.inflow = at_[to_size(u)] == NodePressure::given ? 0 : inflow_[to_size(u)];
-    const Real needed = one.stored + one.squeezed + darcy - weight_[to_size(u)];  // to flow in at the node
-    one.drained = at_[to_size(u)] == NodePressure::given ? -needed : 0;
-    one.seepage = pressure[to_size(u)] * (darcy - 2 * weight_[to_size(u)]) + lifted;
-    return one;
-  });
-  m.ranks.sum(sums);
-  const FlowSums all = sums.value();
-  ledger.inflow += all.inflow, ledger.drained += all.drained, ledger.stored += all.stored;
-  ledger.squeezed += all.squeezed, ledger.seepage += all.seepage;
-}
-
 /// What flows in, how much the velocities that the step has found squeeze the pores, and what is left to the changes of pressure.
 template <int D>
 void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step,

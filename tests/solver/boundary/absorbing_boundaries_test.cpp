@@ -49,6 +49,37 @@ TEST(AbsorbingBoundaries, ACompliantBaseHoldsUntilTheShakingBegins)
   EXPECT_TRUE(ground.reaction().empty());
 }
 
+/// What the change of pore pressure pushes, a node with dashpots keeps in part.
+TEST(AbsorbingBoundaries, TakeTheirShareOfOtherImpulses)
+{
+  Ground ground;
+  add_on<2>(ground.walls, ground.mesh, "y_min", Ground::compliant());
+  ground.walls.finalize();
+  ground.walls.begin_stage(true, 0);
+  const Real mass = 2, kick = 0.25;
+  ground.set({1, 0}, mass, {{1, -1}, {0.5, -0.25}});
+  int count = 0;
+  const auto share_is_that_of_the_resistance = [&](Index n, Index condition, const Mat<2>& share) {
+    ++count;
+    EXPECT_EQ(static_cast<std::size_t>(n), ground.node({1, 0}));
+    EXPECT_EQ(condition, 0);
+    const Vec<2> C(2 * 3, 2 * 5), expected = mass * (Vec<2>(Vec<2>::Constant(mass) + kick * C)).cwiseInverse();
+    EXPECT_LT((share - Mat<2>(expected.asDiagonal())).norm(), rounding);
+  };
+  ground.walls.for_each_dashpot(ground.nodes, share_is_that_of_the_resistance);
+  EXPECT_EQ(count, 0) << "the base holds until shaking begins";
+  ground.walls.begin_stage(false, 7);
+  ground.walls.apply_dashpots(7.5, kick, one_rank(), ground.nodes);
+  ground.walls.for_each_dashpot(ground.nodes, share_is_that_of_the_resistance);
+  EXPECT_EQ(count, 1);
+  ground.walls.apply(Kick{7.5, 7.75}, ground.nodes, ground.work);
+  ground.walls.keep_impulses();
+  const Vec<2> before = ground.walls.conditions().front().impulse;
+  ground.walls.dashpots_react(0, {1, 0}, {3, 4});
+  ground.walls.keep_impulses();
+  expect_near(ground.walls.conditions().front().impulse, before + Vec<2>(3, 4));
+}
+
 TEST(AbsorbingBoundaries, ACompliantBaseGivesTwiceTheWaveAndTakesWhatLeaves)
 {
   Ground ground;
