@@ -215,7 +215,12 @@ inline std::vector<SceneCase> scenes_of_all()
           "  - {type: geostatic, duration: 5, residual: 8.0e-2}\n  - {type: run, duration: 0.02}\n"};
   all.push_back({"flow", flow});
   SceneParts flow_umls = flow;
-  flow_umls.more = "kernel: umls\n" + flow.more;
+  flow_umls.more =
+      "kernel: umls\n"
+      "water: {table: {elevation: 0.5}, suction: 1.0e3, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-4, "
+      "retention: {entry: 1.0e3, exponent: 2}}, {body: high, porosity: 0.3, permeability: 1.0e-5, "
+      "retention: {entry: 2.0e3, exponent: 2, residual: 0.1}}], heads: [{on: x_max, "
+      "level: 0.5}], rain: {rate: 2.0e-4, table: [[0, 0], [0.1, 1]]}, pace: [[0, 20], [0.06, 1]]}}\n";
   all.push_back({"flow_umls", flow_umls});
   all.push_back(
       {"stages_that_change",
