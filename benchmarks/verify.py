@@ -207,6 +207,7 @@ def main():
                     {tools.OVERRIDES[key]: word for key, word in overrides.items()})
     start = time.monotonic()
     document = conduct(lab, chosen(given), overrides, given.digits)
+    given.out.mkdir(parents=True, exist_ok=True)
     (given.out / "verify.json").write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     pages.write(document, given.out / "report")
     if given.release:
