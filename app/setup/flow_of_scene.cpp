@@ -102,13 +102,15 @@ template <int D>
 std::vector<MeshTraction<D>> open_water_of(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& at_start)
 {
   std::vector<MeshTraction<D>> loads;
-  if (!scene.water || !scene.water->flow)
+  const auto gravity = std::ranges::find_if(scene.loads, [](const LoadSpec& load) { return std::holds_alternative<GravitySpec>(load); });
+  if (!scene.water || !scene.water->flow || gravity == scene.loads.end())  // without gravity water has no weight
     return loads;
   for (const HeadSpec& head : scene.water->flow->heads)
     if (const auto facets = mesh.facet_set(head.on)) {
       MeshTraction<D> load = carried_by_mesh<D>(mesh, at_start.orient_facets(*facets));
       load.where = head.where;
       load.unit_weight = scene.water->unit_weight;
+      load.table = std::get<GravitySpec>(*gravity).table;  // as the pore pressure behind it
       load.level = scaled(head.level, head.table);
       for (const Index n : load.node)
         load.height.push_back(mesh.node(n)[D - 1]);

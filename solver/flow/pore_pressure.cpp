@@ -8,7 +8,6 @@ template <int D>
 PorePressure<D>::PorePressure(const Mesh<D>& mesh)
     : pressure_(to_size(mesh.n_nodes())),
       trial_(pressure_.size()),
-
       seen_(pressure_.size()),
       cells_(mesh),
       system_(std::make_unique<FlowSystem<D>>(mesh))
@@ -18,7 +17,6 @@ template <int D>
 PorePressure<D>::PorePressure(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own)
     : pressure_(to_size(mesh.n_nodes())),
       trial_(pressure_.size()),
-
       seen_(pressure_.size()),
       cells_(ranks, mesh, subdomain),
       system_(std::make_unique<FlowSystem<D>>(ranks, mesh, subdomain, own))

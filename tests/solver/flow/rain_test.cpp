@@ -9,8 +9,8 @@ using namespace saturated_soil;
 constexpr Real rate = 1e-5, dt = 0.1;
 constexpr int steps = 10;
 
-/// A bank that cannot move, with a surface of this slope that cuts the cells, or follows them where it is level, 1 m wide (and deep), under rain; of this pressure everywhere, or of
-/// water that stands to a height of 1 m.
+/// A bank that cannot move, 1 m wide (and deep), under rain: with a surface of this slope that cuts the cells, or follows them where it is
+/// level, and with this pressure everywhere, or that of water that stands to a height of 1 m.
 template <int D>
 FlowLedger rained_on(Real slope, std::optional<Real> pressure, Real pace)
 {
