@@ -23,6 +23,7 @@ if(TALUS_PROGRAMS)
   find_package(muparser 2.3 REQUIRED)
   find_package(ZLIB 1.2.11 REQUIRED)
   find_package(PkgConfig REQUIRED)
+  pkg_check_modules(TALUS_PETSC REQUIRED IMPORTED_TARGET petsc>=3.15)
   # By its full name: plain `hdf5` may be any of several builds, and two of them must not meet in one program.
   pkg_check_modules(TALUS_HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi>=1.10.7)
   target_compile_definitions(PkgConfig::TALUS_HDF5 INTERFACE OMPI_SKIP_MPICXX)   # hdf5.h brings along mpi.h

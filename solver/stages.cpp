@@ -9,6 +9,7 @@
 #include "solver/each_particle.hpp"
 #include "solver/run_limits.hpp"
 #include "solver/stable_step.hpp"
+#include "solver/static_stage.hpp"
 
 namespace talus {
 
@@ -63,6 +64,21 @@ void stop_if_invalid(Model<D>& m, bool step_is_done)
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.state.clock.step, m.state.clock.time, what));
 }
 
+/// Takes all motion away.
+template <int D>
+void set_to_rest(Model<D>& m)
+{
+  const Totals<D> now = totals(m);
+  m.state.energy.set_to_rest = now.kinetic;
+  m.state.momentum.rest += ForceAndMoment<D>::of(-now.momentum, -now.angular);
+  m.state.particles.v.assign(m.state.particles.v.size(), Vec<D>::Zero());
+  m.state.clock.lag = 0;
+  for (auto* affine : {&m.state.particles.L, &m.state.particles.C})
+    affine->assign(affine->size(), Mat<D>::Zero());
+  for (RigidState<D>& rigid : m.state.rigid)
+    rigid.v.setZero(), rigid.spin.setZero();
+}
+
 /// The bodies, those without particles whose numbers are not among `chosen`, unless that is empty.
 std::vector<Body> only_bodies(std::span<const Index> chosen, std::vector<Body> bodies)
 {
@@ -83,8 +99,9 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
                    .ramp_shape = stage.ramp_shape,
                    .elastic = stage.elastic,
                    .seeks_rest = stage.seeks_rest(),
-                   .flows = m.problem.flow.any() && !stage.residual};
-  m.state.boundary.begin_stage(stage.residual.has_value(), m.state.clock.time);
+                   .flows = m.problem.flow.any() && !stage.is_at_rest()};
+  m.state.solve = {};
+  m.state.boundary.begin_stage(stage.is_at_rest(), m.state.clock.time);
   // Under a stress of the start all of gravity acts, however it grows afterwards.
   const Real time = m.state.clock.time, ramp = stage.start_stress.empty() ? m.state.stage.ramp(time) : 1;
   const auto follows_table = [&m](Index body) {
@@ -97,6 +114,8 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
     set_start_stress(m.problem.mesh, m.problem.subdomain, *m.problem.ranks, m.problem.loads.gravity(time, ramp),
                      std::span(stage.start_stress), m.work.order, only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials,
                      m.state.particles);
+  if (stage.equilibrium)
+    set_to_rest(m);
   const Real kinetic = totals(m).kinetic;
   m.state.energy = {.loads = m.state.energy.loads_ahead,
                     .internal = m.state.energy.internal_ahead,
@@ -138,9 +157,9 @@ void show(Model<D>& m, const Watch<D>& watch, RunEvent event)
 
 /// Why the run cannot take its next step, if so.
 template <int D>
-std::optional<std::string> reason_to_stop(Model<D>& m, const StepLimits& limits)
+std::optional<std::string> reason_to_stop(Model<D>& m, const Stage& stage, const StepLimits& limits)
 {
-  if (const Real wanted = wanted_step(m, limits); !(wanted >= limits.shortest)) {
+  if (const Real wanted = wanted_step(m, limits); !stage.equilibrium && !(wanted >= limits.shortest)) {
     end_sweeps(m);
     const std::string who = describe_least(m, slowest_particle(m.problem.mesh, m.state.materials, m.state.particles));
     return fmt::format("{} needs a step of {:.3g} s, below time.min_step = {:.3g} s", who.empty() ? "the run" : who, wanted,
@@ -210,12 +229,17 @@ void make_steps(Model<D>& m, const Stage& stage, const StepLimits& limits, const
   while (m.state.clock.time < end * (1 - 1e-14) && m.state.stage.balanced < steps_in_balance) {
     show(m, watch, RunEvent::step_begins);
     const LimitMonitor before = m.state.monitor;
-    if (const auto why = reason_to_stop(m, limits))
+    if (const auto why = reason_to_stop(m, stage, limits))
       abort_run(m, before, watch, *why);
-    const Real wanted = wanted_step(m, limits), left = end - m.state.clock.time;
-    const Real dt = left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver of a step at the end
+    const Real left = end - m.state.clock.time;
     const std::int64_t step = m.state.clock.step;
-    make_step(m, dt);
+    if (stage.equilibrium) {
+      if (const auto why = make_increment(m, *stage.equilibrium, stage.duration / stage.equilibrium->increments, left))
+        abort_run(m, before, watch, *why);
+    } else {
+      const Real wanted = wanted_step(m, limits);
+      make_step(m, left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted);  // no sliver of a step at the end
+    }
     stop_if_invalid(m, m.state.clock.step > step);
     if (step == m.state.stage.first_step)
       m.state.stage.first_residual = m.state.residual;
@@ -256,16 +280,8 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
               fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: {}; give it more duration or damping", stage.name,
                           stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration,
                           why_not_at_rest(rest_conditions(m, stage), m.state.stage.balanced, steps_in_balance)));
-  if (stage.residual) {
-    m.state.energy.set_to_rest = now.kinetic;
-    m.state.momentum.rest += ForceAndMoment<D>::of(-now.momentum, -now.angular);
-    m.state.particles.v.assign(m.state.particles.v.size(), Vec<D>::Zero());
-    m.state.clock.lag = 0;
-    for (auto* affine : {&m.state.particles.L, &m.state.particles.C})
-      affine->assign(affine->size(), Mat<D>::Zero());
-    for (RigidState<D>& rigid : m.state.rigid)
-      rigid.v.setZero(), rigid.spin.setZero();
-  }
+  if (stage.residual)
+    set_to_rest(m);
   if (stage.reset_displacement && !m.state.particles.x0.empty())
     m.state.particles.x0 = m.state.particles.x;
   m.state.stage.done = true;

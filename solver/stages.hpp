@@ -12,22 +12,32 @@
 
 namespace talus {
 
+/// How a stage finds equilibrium by solving for it.
+struct EquilibriumOptions {
+  int increments = 10;   ///< in which its loads act, unless one is too large
+  Real residual = 1e-8;  ///< unbalanced force over the loads [-]
+  int most_cuts = 10;    ///< of an increment that is not solved, in halves
+};
+
 /// A phase of the analysis.
 struct Stage {
   std::string name{};
-  std::string kind = "run";  ///< or "geostatic"
+  std::string kind = "run";  ///< or "geostatic", "static", "quasi_static"
   Real duration{};           ///< [s]
   Real damping{};
   Real ramp{};  ///< [s]
   RampShape ramp_shape = RampShape::linear;
   bool elastic = false;
-  std::optional<Real> residual{};            ///< geostatic: ends when the unbalanced force is below this share of the loads
-  std::vector<StartStress> start_stress{};   ///< of each body; empty: they begin with the stress that they have
-  std::vector<Index> start_stress_bodies{};  ///< that begin with it, by their numbers; none: all
+  std::optional<EquilibriumOptions> equilibrium{};  ///< solved for in each of its steps, without inertia
+  std::optional<Real> residual{};                   ///< geostatic: ends when the unbalanced force is below this share of the loads
+  std::vector<StartStress> start_stress{};          ///< of each body; empty: they begin with the stress that they have
+  std::vector<Index> start_stress_bodies{};         ///< that begin with it, by their numbers; none: all
   bool reset_displacement = false;
   SourceLocation where;
   /// Whether it ends in equilibrium, or is damped.
-  bool seeks_rest() const noexcept { return residual || damping > 0; }
+  bool seeks_rest() const noexcept { return residual || equilibrium || damping > 0; }
+  /// Whether absorbing boundaries hold, and water stands still.
+  bool is_at_rest() const noexcept { return residual || equilibrium; }
 };
 
 struct StepLimits {

@@ -1,5 +1,6 @@
 #include "app/run/simulate.hpp"
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 
@@ -7,6 +8,7 @@
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/rebalance_policy.hpp"
 #include "core/stop_watch.hpp"
+#include "io/equations/petsc_plugin.hpp"
 #include "mesh/partition.hpp"
 #include "solver/particles/redistribute.hpp"
 #include "solver/stable_step.hpp"
@@ -56,6 +58,8 @@ Model<D> build(const Scene& scene, Part<D> part, Setup<D> setup, Real& kernel_se
   Model<D> m(std::move(part.mesh), std::move(transfer));
   if (!part.subdomain.alone())
     m.join(world(), std::move(part.subdomain));
+  if (std::ranges::any_of(setup.stages, [](const Stage& stage) { return stage.equilibrium.has_value(); }))
+    m.problem.equations = &petsc();
   m.state = std::move(setup.state);
   static_cast<SceneConditions<D>&>(m.problem) = std::move(setup.conditions);
   m.state.energy.largest_seen = m.problem.limits.least_energy * least_energy_factor;

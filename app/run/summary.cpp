@@ -207,12 +207,12 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   s.runout = recorder.runout().numbers();
   s.files.assign(recorder.files().begin(), recorder.files().end());
   for (const StageResult& stage : recorder.stages()) {
-    const bool geostatic = stage.kind == "geostatic";
-    const auto if_sought = [&](Real residual) { return geostatic ? std::optional(residual) : std::nullopt; };
+    const bool at_rest = stage.kind != "run";
+    const auto if_sought = [&](Real residual) { return at_rest ? std::optional(residual) : std::nullopt; };
     s.stages.push_back({stage.kind, stage.steps, stage.end - stage.start, if_sought(stage.residual),
-                        quick       ? "quick"
-                        : geostatic ? "at rest"
-                                    : "done",
+                        quick     ? "quick"
+                        : at_rest ? "at rest"
+                                  : "done",
                         if_sought(stage.first_residual), stage.name});
   }
   s.changes = recorder.changes();
@@ -275,7 +275,7 @@ std::string table(const Recorder<D>& recorder)
        [](const EnergyNow& b) { return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.defect, b.dissipated())) : std::string("-"); });
   text += run_out_lines(recorder.runout().numbers());
   for (const StageResult& stage : recorder.stages())
-    if (stage.kind == "geostatic")
+    if (stage.kind != "run")
       text += fmt::format("stage {}: unbalanced force {:.3g} of the loads, {:.3g} when it began\n", stage.name, stage.residual,
                           stage.first_residual);
   text += fmt::format("mass {:.6g} kg", last.mass.start);

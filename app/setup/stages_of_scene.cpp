@@ -89,6 +89,23 @@ Stage stage_of(const GeostaticSpec& spec)
           .reset_displacement = spec.reset_displacement,
           .where = spec.where};
 }
+Stage stage_of(const StaticSpec& spec)
+{
+  return {.duration = spec.duration,
+          .elastic = spec.elastic,
+          .equilibrium = EquilibriumOptions{.increments = spec.increments, .residual = spec.residual},
+          .start_stress = {},
+          .reset_displacement = spec.reset_displacement,
+          .where = spec.where};
+}
+Stage stage_of(const QuasiStaticSpec& spec)
+{
+  return {.duration = spec.duration,
+          .elastic = spec.elastic,
+          .equilibrium = EquilibriumOptions{.increments = spec.increments, .residual = spec.residual},
+          .start_stress = {},
+          .where = spec.where};
+}
 Stage stage_of(const StageSpec& spec)
 {
   Stage stage = std::visit([](const auto& s) { return stage_of(s); }, spec);
@@ -147,10 +164,13 @@ void set_stages(const Scene& scene, SceneErrorCollector& errors, Setup<D>& setup
     setup.stages.push_back(stage_of(spec));
   for (std::size_t s = 0; s < scene.stages.size(); ++s) {
     Stage& stage = setup.stages[s];
-    const auto* spec = std::get_if<GeostaticSpec>(&scene.stages[s]);
-    if (spec == nullptr || !spec->initial_stress)
+    const K0Spec* const stress = initial_stress_of(scene.stages[s]);
+    if (const auto* solved = std::get_if<StaticSpec>(&scene.stages[s]);
+        solved != nullptr && solved->grow.value_or(s == 0 && stress == nullptr))
+      stage.ramp = stage.duration;
+    if (stress == nullptr)
       continue;
-    stage.start_stress = start_stress_of_bodies(*spec->initial_stress, scene, errors);
+    stage.start_stress = start_stress_of_bodies(*stress, scene, errors);
     if (s > 0)
       stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.state.bodies);
     for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {

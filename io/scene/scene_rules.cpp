@@ -56,12 +56,11 @@ class Rules : private SceneRuleBase {
     if (!scene_.stages.empty() && scene_.time.end != 0)
       add("time.end", "the stages say when the run ends: leave this out");
     for (std::size_t i = 1; i < scene_.stages.size(); ++i)
-      if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]);
-          stage != nullptr && stage->initial_stress && stage->appear.empty())
+      if (initial_stress_of(scene_.stages[i]) != nullptr && changes_of(scene_.stages[i]).appear.empty())
         add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress, or one in which bodies appear: theirs");
     for (std::size_t i = 0; i < scene_.stages.size(); ++i)
-      if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]); stage != nullptr && stage->initial_stress)
-        initial_stress(fmt::format("stages[{}].initial_stress", i), static_cast<Index>(i), *stage->initial_stress);
+      if (const K0Spec* const stress = initial_stress_of(scene_.stages[i]))
+        initial_stress(fmt::format("stages[{}].initial_stress", i), static_cast<Index>(i), *stress);
   }
 
   void initial_stress(const std::string& path, Index number, const K0Spec& spec)
@@ -236,8 +235,7 @@ class Rules : private SceneRuleBase {
           add(path, fmt::format("\"{}\" is taken by initial.bodies[{}] already", source(*taken), at));
       }
     }
-    if (const auto* stage = scene_.stages.empty() ? nullptr : std::get_if<GeostaticSpec>(&scene_.stages.front());
-        stage != nullptr && stage->initial_stress)
+    if (!scene_.stages.empty() && initial_stress_of(scene_.stages.front()) != nullptr)
       add("stages[0].initial_stress", "the stress comes from initial.from: leave this out");
   }
 
@@ -273,10 +271,7 @@ class Rules : private SceneRuleBase {
   }
 
   /// Whether the bodies begin in equilibrium with the loads, as far as the scene tells.
-  bool begins_at_rest() const
-  {
-    return scene_.initial || (!scene_.stages.empty() && std::holds_alternative<GeostaticSpec>(scene_.stages.front()));
-  }
+  bool begins_at_rest() const { return scene_.initial || (!scene_.stages.empty() && seeks_equilibrium(scene_.stages.front())); }
 };
 
 }  // namespace

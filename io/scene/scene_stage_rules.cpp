@@ -41,6 +41,8 @@ class StageRules : private SceneRuleBase {
   {
     const StageChanges& changes = changes_of(scene_.stages[static_cast<std::size_t>(s)]);
     const std::string at = fmt::format("stages[{}]", s);
+    if (is_solved(scene_.stages[static_cast<std::size_t>(s)]))
+      solved(at);
     for (std::size_t i = 0; i < changes.appear.size(); ++i)
       appears(fmt::format("{}.appear[{}]", at, i), changes.appear[i], s, i);
     for (std::size_t i = 0; i < changes.vanish.size(); ++i)
@@ -72,6 +74,18 @@ class StageRules : private SceneRuleBase {
     const bool any_before = s == 0 || std::ranges::any_of(bodies_, [&](const auto& body) { return presence(body).in(s - 1); });
     if (!bodies_.empty() && !any_left && any_before)
       add(at, s == 0 ? "there is no body at the start: all of them appear later" : "no body is left in this stage");
+  }
+
+  /// A stage without inertia has one field of displacements, and boundaries of the mesh.
+  void solved(const std::string& at)
+  {
+    const auto refuse = [&](bool there, std::string_view key) {
+      if (there)
+        add(at, fmt::format("a stage that solves for equilibrium has no {}: let a stage of type geostatic find it", key));
+    };
+    refuse(!scene_.contacts.empty(), "contacts");
+    refuse(!scene_.cuts.empty(), "cuts");
+    refuse(!scene_.rigid.empty(), "rigid bodies");
   }
 
   void appears(const std::string& path, const std::string& body, Index s, std::size_t place)

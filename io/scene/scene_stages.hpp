@@ -192,7 +192,81 @@ struct RunSpec : StageChanges {
   }
 };
 
-using StageSpec = std::variant<GeostaticSpec, RunSpec>;
+/// A stage that solves for equilibrium under loads that grow in increments: no inertia, no time.
+struct StaticSpec : StageChanges {
+  static constexpr std::string_view name = "static";
+  Real duration = 1, residual = 1e-8;
+  int increments = 10;
+  std::optional<bool> grow;
+  bool elastic = false, reset_displacement = false;
+  std::optional<K0Spec> initial_stress;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(
+        std::tuple{
+            optional("increments", &StaticSpec::increments, at_least(1), "-",
+                     "in which the loads act; one that is not solved is cut in halves, and the next ones grow again"),
+            optional("residual", &StaticSpec::residual, positive, "-",
+                     "an increment is solved when the unbalanced nodal forces are below this share of the loads"),
+            optional("grow", &StaticSpec::grow, any, "-",
+                     "whether gravity and loads grow from zero; default true in the first stage without initial_stress, else false: they "
+                     "act from its beginning, and tables and prescribed velocities alone change in it"),
+            optional("duration", &StaticSpec::duration, positive, "s",
+                     "by how much time goes on, for tables, prescribed velocities and outputs; rates are those of this time"),
+            optional("elastic", &StaticSpec::elastic, any, "-", "suspend yielding during the stage"),
+            optional("reset_displacement", &StaticSpec::reset_displacement, any, "-",
+                     "displacement of later stages counts from the end of this one"),
+            group("initial_stress", &StaticSpec::initial_stress,
+                  "stress to start from, by K0 or as given, for laws that can carry a prestress; in a later stage of the bodies that "
+                  "appear")},
+        StageChanges::fields());
+  }
+};
+
+/// A stage that goes through states of equilibrium in time: slow motions, creep.
+struct QuasiStaticSpec : StageChanges {
+  static constexpr std::string_view name = "quasi_static";
+  Real duration{}, residual = 1e-6;
+  int increments = 100;
+  bool elastic = false;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(
+        std::tuple{required("duration", &QuasiStaticSpec::duration, positive, "s", "length of the stage"),
+                   optional("increments", &QuasiStaticSpec::increments, at_least(1), "-",
+                            "into which it is divided; one that is not solved is cut in halves, and the next ones grow again"),
+                   optional("residual", &QuasiStaticSpec::residual, positive, "-",
+                            "an increment is solved when the unbalanced nodal forces are below this share of the loads"),
+                   optional("elastic", &QuasiStaticSpec::elastic, any, "-", "suspend yielding during the stage")},
+        StageChanges::fields());
+  }
+};
+
+using StageSpec = std::variant<GeostaticSpec, RunSpec, StaticSpec, QuasiStaticSpec>;
+
+/// Where the stage says what stress it begins with; nothing where it cannot.
+inline const K0Spec* initial_stress_of(const StageSpec& stage)
+{
+  return std::visit(
+      [](const auto& spec) -> const K0Spec* {
+        if constexpr (requires { spec.initial_stress; })
+          return spec.initial_stress ? &*spec.initial_stress : nullptr;
+        else
+          return nullptr;
+      },
+      stage);
+}
+/// Whether it ends in equilibrium, and does not go on in time.
+inline bool seeks_equilibrium(const StageSpec& stage)
+{
+  return std::holds_alternative<GeostaticSpec>(stage) || std::holds_alternative<StaticSpec>(stage);
+}
+inline bool is_solved(const StageSpec& stage)
+{
+  return std::holds_alternative<StaticSpec>(stage) || std::holds_alternative<QuasiStaticSpec>(stage);
+}
 
 inline const StageChanges& changes_of(const StageSpec& stage)
 {

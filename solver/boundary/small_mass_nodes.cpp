@@ -67,7 +67,7 @@ struct NodesAndHosts {
 }  // namespace
 
 template <int D>
-void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
+void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, ActiveNodes which)
 {
   small_.reserve(nodes.sum.size());
   small_.clear();
@@ -79,7 +79,8 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
   nodes.in_use.for_each_ascending([&](Index node) {
     const auto n = static_cast<std::size_t>(node);
     const NodeSum<D>& sum = nodes.sum[n];
-    nodes.active[n] = has_own_motion(sum, nodes) ? 1 : 0;
+    if (which == ActiveNodes::by_mass)
+      nodes.active[n] = has_own_motion(sum, nodes) ? 1 : 0;
     weight_[n] = nodes.active[n] ? sum.mass : 0;
     ring_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0)) ? 1 : 0;
     if (ring_[n] != 0)

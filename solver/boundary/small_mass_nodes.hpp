@@ -13,6 +13,9 @@ bool has_own_motion(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
   return sum.is_seen() && sum.mass > nodes.least_share * sum.lightest && sum.mass > nodes.least_share_of_gross * sum.gross;
 }
 
+/// Which nodes have a motion of their own: those with enough mass, or those that had one before, in trials of one increment.
+enum class ActiveNodes : std::uint8_t { by_mass, as_before };
+
 /// The mass, momentum and force of a node of small mass, or of none, go to its host nodes: the active nodes of its first ring, or else of its
 /// second ring, in proportion to their masses.  It moves with the mean velocity of its hosts.  Because one map is the transpose of the
 /// other, momentum is conserved, and a uniform motion stays uniform.  Nodes of negative mass, which the weights of moving least squares
@@ -29,7 +32,7 @@ class SmallMassNodes {
   SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own);
 
   /// Finds the nodes of small mass, sets the active flags of own nodes, and gives mass, momentum and force to the hosts.
-  void lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
+  void lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, ActiveNodes which = ActiveNodes::by_mass);
   /// Gives only the momentum to the hosts, after it was summed again.
   void lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
   /// Sets the motion of the nodes of small mass: the mean motion of their hosts, under the boundary conditions, which act on the mass of
@@ -44,6 +47,9 @@ class SmallMassNodes {
   /// Sets the vector of each node of small mass n to allowed(n, mean of its hosts): the transpose of give().
   template <class Allowed>
   void take(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors);
+  /// Calls f(host, share) for the hosts of a node of small mass; there are none if no node within two rings is active.
+  template <class F>
+  void for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const;
   Index size() const noexcept { return static_cast<Index>(small_.size()); }
 
  private:
@@ -54,9 +60,6 @@ class SmallMassNodes {
   /// Calls f(n, mass) for the active nodes of the first or second ring around a node.
   template <class F>
   void for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const;
-  /// Calls f(host, share) for the hosts of a node; there are none if no node within two rings is active.
-  template <class F>
-  void for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const;
   void weigh_hosts(const Mesh<D>& mesh, Index small_mass_node);
   /// Calls f(sum of the host, share, sum of the node) for own hosts, with the nodes of small mass in ascending order.
   template <class F>

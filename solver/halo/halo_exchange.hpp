@@ -34,7 +34,8 @@ enum class MessageTag : int {
   wall_touches = 19,
   sheet_nodes = 20,
   flow_cells = 21,
-  flow_nodes = 22
+  flow_nodes = 22,
+  equations = 23
 };
 
 /// Selects the parts of a row to be sent: the whole row.

@@ -2,6 +2,7 @@
 // Data that no step changes: the mesh and its part on this rank, loads, limits and options.  Stages may change them between two steps.
 #include <utility>
 
+#include "core/nonlinear_solver.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
 #include "mesh/locate.hpp"
@@ -54,6 +55,7 @@ struct Problem : SceneConditions<D> {
   Subdomain subdomain;                ///< part of the mesh on this rank
   OwnNodes own;
   WantedColumns columns;
+  NonlinearSolver* equations = nullptr;  ///< for stages that solve for equilibrium
 
   /// Velocity fields of bodies in contact; with sheets there are as many again, behind the sheets.
   std::size_t fields_in_front() const noexcept { return static_cast<std::size_t>(this->contacts.n_fields); }

@@ -64,6 +64,25 @@ struct StageState {
   }
 };
 
+/// How the equations of equilibrium were solved in a stage that solves for it.
+struct SolveLedger {
+  Real increment = 0;                                                   ///< length of the next increment [s]; 0: not yet known
+  std::int64_t increments = 0, cuts = 0;                                ///< in this stage
+  std::int64_t iterations = 0, linear_iterations = 0, evaluations = 0;  ///< in this stage: of Newton's method, of linear systems, of forces
+  std::int64_t last_iterations = 0, last_linear_iterations = 0;         ///< of the last increment
+  static constexpr auto fields()
+  {
+    return std::tuple{saved("increment", &SolveLedger::increment),
+                      saved("increments", &SolveLedger::increments),
+                      saved("cuts", &SolveLedger::cuts),
+                      saved("iterations", &SolveLedger::iterations),
+                      saved("linear_iterations", &SolveLedger::linear_iterations),
+                      saved("evaluations", &SolveLedger::evaluations),
+                      saved("last_iterations", &SolveLedger::last_iterations),
+                      saved("last_linear_iterations", &SolveLedger::last_linear_iterations)};
+  }
+};
+
 /// Time spent per phase of the step [s], and the number of particle-steps.
 struct Timings {
   Real locate{}, scatter{}, nodes{}, gather{}, stress{}, output{};
@@ -105,6 +124,7 @@ struct State {
   MassLedger<D> mass;
   MomentumLedger<D> momentum;
   FlowLedger flow;
+  SolveLedger solve;
   LimitMonitor monitor;
   Timings timings;
   Real residual = 0;  ///< unbalanced force of the nodes over the loads in the last step [-]
@@ -118,12 +138,12 @@ struct State {
 
   static constexpr auto parts()
   {
-    return std::tuple{saved("clock", &State::clock),        saved("stage", &State::stage),       saved("energy", &State::energy),
-                      saved("mass", &State::mass),          saved("momentum", &State::momentum), saved("watched", &State::monitor),
-                      saved("flow", &State::flow),          saved("timings", &State::timings),   saved("residual", &State::residual),
-                      saved("crossing", &State::crossing),  saved("walls", &State::boundary),    saved("contacts", &State::contacts),
-                      saved("rigid", &State::rigid),        saved("bodies", &State::bodies),     saved("laws", &State::materials),
-                      saved("particles", &State::particles)};
+    return std::tuple{saved("clock", &State::clock),       saved("stage", &State::stage),        saved("energy", &State::energy),
+                      saved("mass", &State::mass),         saved("momentum", &State::momentum),  saved("watched", &State::monitor),
+                      saved("flow", &State::flow),         saved("solve", &State::solve),        saved("timings", &State::timings),
+                      saved("residual", &State::residual), saved("crossing", &State::crossing),  saved("walls", &State::boundary),
+                      saved("contacts", &State::contacts), saved("rigid", &State::rigid),        saved("bodies", &State::bodies),
+                      saved("laws", &State::materials),    saved("particles", &State::particles)};
   }
 };
 

@@ -30,7 +30,7 @@ std::size_t stages_until_rest(const Scene& scene)
 {
   std::size_t count = 0;
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
-    if (std::holds_alternative<GeostaticSpec>(scene.stages[i]))
+    if (seeks_equilibrium(scene.stages[i]))
       count = i + 1;
   return count;
 }

@@ -1,0 +1,73 @@
+#pragma once
+// One increment of a stage without inertia: the displacements of the nodes that bring stress, loads and boundary conditions into balance.
+#include <optional>
+#include <string>
+
+#include "core/nonlinear_solver.hpp"
+#include "solver/model/model.hpp"
+
+namespace talus {
+
+/// The equations of an increment of length dt [s].  The unknowns are the displacements u of the nodes with a motion of their own; a trial moves the
+/// particles from where they are by u, as a step with the velocities u / dt does, lets their laws find the stress, and sums forces r at the
+/// same nodes, with the weights of the new positions.  So the state that is found is in balance for the kernel of the steps that follow.
+///
+/// Boundary conditions act on u as on the velocities of a step:  f(u) = s (u - B(u + r(u) / s))  with the stiffness s of a node, B setting
+/// prescribed velocities, planes and Coulomb friction.  Of a free node f = -r; of a held one u is that of the boundary; where it presses on a
+/// wall, f = 0 is Signorini's and Coulomb's conditions (the natural map of Alart & Curnier, Comput. Methods Appl. Mech. Engrg. 92, 1991).
+template <int D>
+class LoadIncrement {
+ public:
+  /// The particles must be at rest.  Collective.
+  LoadIncrement(Model<D>& m, Real dt);
+  /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
+  bool is_sound() const noexcept { return sound_; }
+
+  /// Nothing where it was solved: the model is then at its end, with its balances.  Otherwise why not, and the model as it was.  Collective.
+  std::optional<std::string> solve(NonlinearSolver& solver, Real residual);
+
+ private:
+  enum class Then : std::uint8_t { forces, stay };
+
+  void restore();
+  bool find_forces(ActiveNodes active);
+  void list_unknowns();
+  void set_stiffness();
+  void set_constraints();
+  void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
+  bool move(std::span<const Real> x, Then then);
+  bool find_residual(std::span<const Real> x, std::span<Real> f);
+  Vec<D> net_force(Index node) const;
+  void accept(std::span<const Real> x);
+  void record_work(std::span<const Real> x);
+  std::string place_of_largest(std::span<const Real> x) const;
+  Real norm(std::span<const Real> f) const;
+
+  Nodes<D>& nodes() noexcept { return m_.work.fields.front().nodes; }
+  const Nodes<D>& nodes() const noexcept { return m_.work.fields.front().nodes; }
+  Vec<D> displacement(std::span<const Real> x, std::size_t k) const noexcept
+  {
+    return length_ * Eigen::Map<const Vec<D>>(x.data() + k * D);
+  }
+
+  Model<D>& m_;
+  Real dt_, time_;
+  State<D> before_;  ///< at its beginning, the particles in their columns
+  CellOrder order_;
+  bool sound_ = false;
+
+  std::vector<Index> node_;                                   ///< own nodes with a motion of their own
+  std::vector<Real> number_;                                  ///< by node: 1 + number of the node among those of all ranks; 0 without
+  std::vector<Mat<D>> free_;                                  ///< of each of `node_`: changes that its conditions leave free
+  std::vector<Real> stiffness_;                               ///< s of each of `node_` [N/m]
+  std::vector<std::pair<Index, std::array<Real, 2>>> cells_;  ///< with particles: volume times P-wave modulus and shear modulus [N m]
+  Real length_ = 1, force_ = 1;                               ///< units of unknowns [m] and residuals [N]
+  std::vector<Vec<D>> reaction_;                              ///< of each of `node_` in the last trial [N]
+  std::vector<Vec<D>> weight_;                                ///< of each of `node_` in the last trial [N]
+  std::int64_t evaluations_ = 0;
+};
+
+extern template class LoadIncrement<2>;
+extern template class LoadIncrement<3>;
+
+}  // namespace talus
