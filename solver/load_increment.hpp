@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/nonlinear_solver.hpp"
+#include "solver/gradient_jumps.hpp"
 #include "solver/model/model.hpp"
 
 namespace talus {
@@ -20,6 +21,13 @@ class LoadIncrement {
  public:
   /// The particles must be at rest.  Collective.
   LoadIncrement(Model<D>& m, Real dt);
+  /// An increment without length, at the end of one of length dt: what that has left out of balance.  Collective.
+  static LoadIncrement once_more(Model<D>& m, Real dt)
+  {
+    m.state.clock.time -= dt;
+    --m.state.clock.step;
+    return LoadIncrement(m, dt);
+  }
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
 
@@ -33,12 +41,15 @@ class LoadIncrement {
   bool find_forces(ActiveNodes active);
   void list_unknowns();
   void set_stiffness();
+  void set_jumps(const std::vector<Vec3>& of_cell);
+  void find_jump_forces();
   void set_constraints();
   void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
   bool move(std::span<const Real> x, Then then);
   bool find_residual(std::span<const Real> x, std::span<Real> f);
   Vec<D> net_force(Index node) const;
   void accept(std::span<const Real> x);
+  void find_net_acceleration(std::span<const Real> f);
   void record_work(std::span<const Real> x);
   std::string place_of_largest(std::span<const Real> x) const;
   Real norm(std::span<const Real> f) const;
@@ -60,10 +71,14 @@ class LoadIncrement {
   std::vector<Real> number_;                                  ///< by node: 1 + number of the node among those of all ranks; 0 without
   std::vector<Mat<D>> free_;                                  ///< of each of `node_`: changes that its conditions leave free
   std::vector<Real> stiffness_;                               ///< s of each of `node_` [N/m]
+  std::vector<Real> beyond_;  ///< the part of it that cells do not give [N/m]
   std::vector<std::pair<Index, std::array<Real, 2>>> cells_;  ///< with particles: volume times P-wave modulus and shear modulus [N m]
-  Real length_ = 1, force_ = 1;                               ///< units of unknowns [m] and residuals [N]
-  std::vector<Vec<D>> reaction_;                              ///< of each of `node_` in the last trial [N]
-  std::vector<Vec<D>> weight_;                                ///< of each of `node_` in the last trial [N]
+  GradientJumps<D> jumps_;
+  std::vector<Vec<D>> u_, jump_force_;  ///< by node: displacements of the last trial [m], and the forces of their jumps [N]
+  HaloExchange copies_;                 ///< of values of nodes
+  Real length_ = 1, force_ = 1;         ///< units of unknowns [m] and residuals [N]
+  std::vector<Vec<D>> reaction_;        ///< of each of `node_` in the last trial [N]
+  std::vector<Vec<D>> weight_;          ///< of each of `node_` in the last trial [N]
   std::int64_t evaluations_ = 0;
 };
 

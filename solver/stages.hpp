@@ -14,9 +14,10 @@ namespace talus {
 
 /// How a stage finds equilibrium by solving for it.
 struct EquilibriumOptions {
-  int increments = 10;   ///< in which its loads act, unless one is too large
-  Real residual = 1e-8;  ///< unbalanced force over the loads [-]
-  int most_cuts = 10;    ///< of an increment that is not solved, in halves
+  int increments = 10;    ///< in which its loads act, unless one is too large
+  Real residual = 1e-8;   ///< unbalanced force over the loads [-]
+  Real left_over = 1e-4;  ///< the same of the kernel's own balance at its end, without the stiffness that modes without any are given [-]
+  int most_cuts = 10;     ///< of an increment that is not solved, in halves
 };
 
 /// A phase of the analysis.
