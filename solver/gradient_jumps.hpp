@@ -1,6 +1,6 @@
 #pragma once
 // Stiffness of displacements that averaged gradients do not see.
-#include <array>
+#include <span>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -8,26 +8,32 @@
 namespace talus {
 
 /// Kernels that average gradients over the cells around a node do not see displacements that alternate from node to node: such modes have no
-/// stiffness.  This gives them one, by the energy of what the average leaves out,
+/// stiffness.  Nodes beyond a free surface that cuts cells have hardly any.  This gives them one, by the energy of what the average leaves out,
 ///
-///     W(u) = 1/2 sum_c sum_(n of c) V_c mu_c / (D + 1) |grad u_c - G_n|^2,     G_n = sum_c V_c grad u_c / sum_c V_c over the cells of n,
+///     W(u) = 1/2 sum_c sum_(n of c) |c| mu_c / (D + 1) |grad u_c - G_n|^2,     G_n = sum_c V_c grad u_c / sum_c V_c over the cells of n,
 ///
-/// with the filled volume V_c [m^D] and the shear modulus mu_c [Pa] of the cells.  It vanishes for linear fields; of smooth ones it is of the
-/// order h^2, as the stabilization of Dohrmann & Bochev (Int. J. Numer. Meth. Fluids 46, 2004), which projects in the same way.
+/// over all cells with a node that a filled cell has, with the filled volume V_c [m^D] and a shear modulus mu_c [Pa] of the cells.  It vanishes for
+/// linear fields; of smooth ones it is of the order h^2, as the stabilization of Dohrmann & Bochev (Int. J. Numer. Meth. Fluids 46, 2004), which
+/// projects in the same way, and the ghost penalty of cut cells (Burman, C. R. Math. 348, 2010).
 template <int D>
 class GradientJumps {
  public:
-  struct Cell {
-    Index cell;
-    Real volume;   ///< filled [m^D]
-    Real modulus;  ///< volume times shear modulus [N m]
-  };
   GradientJumps() = default;
-  GradientJumps(const Mesh<D>& mesh, std::vector<Cell> cells) : cells_(std::move(cells)), volume_(to_size(mesh.n_nodes()), 0)
+  /// Of each cell of the mesh the filled volume, and this volume times the shear modulus.
+  GradientJumps(const Mesh<D>& mesh, std::span<const Real> filled, std::span<const Real> stiffness)
+      : filled_(filled.begin(), filled.end()), volume_(to_size(mesh.n_nodes()), 0)
   {
-    for (const Cell& one : cells_)
-      for (const Index n : mesh.cell(one.cell))
-        volume_[to_size(n)] += one.volume;
+    std::vector<Real> modulus(volume_.size(), 0);
+    for (Index c = 0; c < mesh.n_cells(); ++c)
+      for (const Index n : mesh.cell(c))
+        volume_[to_size(n)] += filled[to_size(c)], modulus[to_size(n)] += stiffness[to_size(c)];
+    for (Index c = 0; c < mesh.n_cells(); ++c) {
+      Real volume = 0, shear = 0;
+      for (const Index n : mesh.cell(c))
+        volume += volume_[to_size(n)], shear += modulus[to_size(n)];
+      if (volume > 0)
+        cells_.push_back({c, mesh.volume(c) * shear / volume / (D + 1)});
+    }
   }
 
   /// Adds -dW/du [N] to the forces of the nodes.
@@ -36,30 +42,40 @@ class GradientJumps {
     mean_.assign(volume_.size(), Mat<D>::Zero());
     rest_.assign(volume_.size(), Mat<D>::Zero());
     gradient_.clear();
+    const auto is_filled = [&](Index n) { return volume_[to_size(n)] > 0; };
+    const auto share = [&](Index c, Index n) { return filled_[to_size(c)] / volume_[to_size(n)]; };
     for (const Cell& one : cells_) {
       Mat<D> gradient = Mat<D>::Zero();
       for (std::size_t a = 0; a <= D; ++a)
         gradient += u[to_size(mesh.cell(one.cell)[a])] * mesh.gradients(one.cell)[a].transpose();
       gradient_.push_back(gradient);
       for (const Index n : mesh.cell(one.cell))
-        mean_[to_size(n)] += one.volume / volume_[to_size(n)] * gradient;
+        if (is_filled(n))
+          mean_[to_size(n)] += share(one.cell, n) * gradient;
     }
     for (std::size_t k = 0; k < cells_.size(); ++k)
       for (const Index n : mesh.cell(cells_[k].cell))
-        rest_[to_size(n)] += cells_[k].modulus / (D + 1) * (gradient_[k] - mean_[to_size(n)]);
+        if (is_filled(n))
+          rest_[to_size(n)] += cells_[k].stiffness * (gradient_[k] - mean_[to_size(n)]);
     for (std::size_t k = 0; k < cells_.size(); ++k) {
-      const Cell& one = cells_[k];
+      const Index c = cells_[k].cell;
       Mat<D> stress = Mat<D>::Zero();
-      for (const Index n : mesh.cell(one.cell))
-        stress += one.modulus / (D + 1) * (gradient_[k] - mean_[to_size(n)]) - one.volume / volume_[to_size(n)] * rest_[to_size(n)];
+      for (const Index n : mesh.cell(c))
+        if (is_filled(n))
+          stress += cells_[k].stiffness * (gradient_[k] - mean_[to_size(n)]) - share(c, n) * rest_[to_size(n)];
       for (std::size_t a = 0; a <= D; ++a)
-        force[to_size(mesh.cell(one.cell)[a])] -= stress * mesh.gradients(one.cell)[a];
+        force[to_size(mesh.cell(c)[a])] -= stress * mesh.gradients(c)[a];
     }
   }
 
  private:
+  struct Cell {
+    Index cell;
+    Real stiffness;  ///< volume times shear modulus, of each node [N m]
+  };
   std::vector<Cell> cells_;
-  std::vector<Real> volume_;  ///< by node: of the cells around it
+  std::vector<Real> filled_;  ///< by cell: filled volume
+  std::vector<Real> volume_;  ///< by node: that of the cells around it
   std::vector<Mat<D>> mean_, rest_, gradient_;
 };
 

@@ -41,7 +41,8 @@ constexpr Real shear_of_unknown = 2.0 / 7, shear_of_fluid = 1e-3;
 }  // namespace
 
 template <int D>
-LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt) : m_(m), dt_(dt), time_(m.state.clock.time)
+LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt, Real loads_ahead)
+    : m_(m), dt_(dt), time_(m.state.clock.time), loads_from_(time_ + loads_ahead)
 {
   end_sweeps(m_);
   before_ = m_.state;
@@ -159,11 +160,12 @@ void LoadIncrement<D>::set_stiffness()
 template <int D>
 void LoadIncrement<D>::set_jumps(const std::vector<Vec3>& of_cell)
 {
-  std::vector<typename GradientJumps<D>::Cell> cells;
-  for (std::size_t c = 0; c < of_cell.size(); ++c)
-    if (of_cell[c][2] > 0)
-      cells.push_back({static_cast<Index>(c), of_cell[c][2], stiffness_of_jumps * of_cell[c][1]});
-  jumps_ = GradientJumps<D>(m_.problem.mesh, std::move(cells));
+  std::vector<Real> filled, stiffness;
+  for (const Vec3& one : of_cell) {
+    filled.push_back(one[2]);
+    stiffness.push_back(stiffness_of_jumps * one[1]);
+  }
+  jumps_ = GradientJumps<D>(m_.problem.mesh, filled, stiffness);
 }
 
 /// The forces of the displacements that averaged gradients do not see, at nodes with a motion of their own.
@@ -370,21 +372,41 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, Real
   return std::nullopt;
 }
 
-/// Half of the work of loads and gravity at the displacements, with forces as they are at present.
+/// Half of the work of loads and gravity at the displacements, with forces as they are before these.  What is out of balance before and behind an
+/// increment does work that nothing takes up; it counts as damping.
 template <int D>
 void LoadIncrement<D>::record_work(std::span<const Real> x)
 {
-  const Real time = m_.state.clock.time, ramp = m_.state.stage.ramp(time);
+  const Real time = loads_from_, ramp = m_.state.stage.ramp(time);
   const Vec<D> gravity = m_.problem.loads.gravity(time, ramp);
   nodes().kick = dt_ / 2;
   add_work(m_.problem.loads, time, ramp, m_.problem.own, nodes(), m_.work.sums.work_on_mesh);
   for (std::size_t k = 0; k < node_.size(); ++k) {
     const auto n = to_size(node_[k]);
     NodeWork<D> of_node;
-    of_node.gravity = nodes().sum[n].mass * gravity.dot(displacement(x, k)) / 2;
+    const Vec<D> weight = nodes().sum[n].mass * gravity, u = displacement(x, k);
+    of_node.gravity = weight.dot(u) / 2;
+    of_node.damping = -(free_[k] * (nodes().sum[n].force + weight)).dot(u) / 2;
     m_.work.sums.nodes.add(of_node);
     if (!m_.problem.loads.on_surfaces.empty())
       m_.work.sums.work_on_mesh.add(surface_work(nodes(), node_[k]));
+  }
+}
+
+/// Loads on particles: their forces at the end, and their work by the mean of those at the beginning and at the end.
+template <int D>
+void LoadIncrement<D>::record_particle_loads()
+{
+  const ParticleStrips<D>& strips = *m_.work.strips;
+  for (std::size_t key = 0; key < m_.work.load_sums.size(); ++key) {
+    ParticleLoadSums<D> at_end;
+    for (const Strip& strip : strips.strips(key)) {
+      const StripColumns<D> columns = strips.columns(strip);
+      at_end.add_forces(columns, to_size(strip.n));
+      at_end.add_work(columns, to_size(strip.n));
+    }
+    at_end.work = (m_.work.load_sums[key].work + at_end.work) / 2;
+    m_.work.load_sums[key] = at_end;
   }
 }
 
@@ -425,6 +447,7 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
     const NodeSum<D>& sum = nodes().sum[to_size(node_[k])];
     NodeWork<D> of_node;
     of_node.gravity = sum.mass * gravity.dot(displacement(x, k)) / 2;
+    of_node.damping = (free_[k] * Eigen::Map<const Vec<D>>(f.data() + k * D)).dot(displacement(x, k)) / 2;
     of_node.mass = sum.mass;
     of_node.first_moment = sum.mass * m_.problem.mesh.node(node_[k]);
     at_end.add(of_node);
@@ -438,6 +461,7 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
       work_on_mesh.add(surface_work(nodes(), n));
 
   move(x, Then::stay);
+  record_particle_loads();
   m_.state.boundary = boundary;
   sums.at_nodes = at_nodes, sums.on_mesh = on_mesh;
   sums.nodes.add(at_end), sums.work_on_mesh.add(work_on_mesh), sums.balance = balance;

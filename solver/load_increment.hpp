@@ -19,14 +19,14 @@ namespace talus {
 template <int D>
 class LoadIncrement {
  public:
-  /// The particles must be at rest.  Collective.
-  LoadIncrement(Model<D>& m, Real dt);
+  /// The particles must be at rest.  Loads before it are those of its beginning and `loads_ahead` [s].  Collective.
+  explicit LoadIncrement(Model<D>& m, Real dt, Real loads_ahead = 0);
   /// An increment without length, at the end of one of length dt: what that has left out of balance.  Collective.
   static LoadIncrement once_more(Model<D>& m, Real dt)
   {
     m.state.clock.time -= dt;
     --m.state.clock.step;
-    return LoadIncrement(m, dt);
+    return LoadIncrement(m, dt, dt);
   }
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
@@ -51,6 +51,7 @@ class LoadIncrement {
   void accept(std::span<const Real> x);
   void find_net_acceleration(std::span<const Real> f);
   void record_work(std::span<const Real> x);
+  void record_particle_loads();
   std::string place_of_largest(std::span<const Real> x) const;
   Real norm(std::span<const Real> f) const;
 
@@ -62,7 +63,7 @@ class LoadIncrement {
   }
 
   Model<D>& m_;
-  Real dt_, time_;
+  Real dt_, time_, loads_from_;  ///< length, beginning, and time of the loads before it [s]
   State<D> before_;  ///< at its beginning, the particles in their columns
   CellOrder order_;
   bool sound_ = false;
