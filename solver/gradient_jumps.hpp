@@ -32,7 +32,7 @@ class GradientJumps {
       for (const Index n : mesh.cell(c))
         volume += volume_[to_size(n)], shear += modulus[to_size(n)];
       if (volume > 0)
-        cells_.push_back({c, mesh.volume(c) * shear / volume / (D + 1)});
+        cells_.push_back({c, (filled[to_size(c)] > 0 ? 1 : 0.1) * mesh.volume(c) * shear / volume / (D + 1)});
     }
   }
 

@@ -372,6 +372,13 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, Real
   return std::nullopt;
 }
 
+/// What is out of balance at a node in the last trial without the forces of jumps, of which a boundary takes up a part by its reaction [N].
+template <int D>
+Vec<D> LoadIncrement<D>::left_over(std::span<const Real> f, std::size_t k) const
+{
+  return -force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) - free_[k] * jump_force_[to_size(node_[k])];
+}
+
 /// Half of the work of loads and gravity at the displacements, with forces as they are before these.  What is out of balance before and behind an
 /// increment does work that nothing takes up; it counts as damping.
 template <int D>
@@ -418,8 +425,7 @@ void LoadIncrement<D>::find_net_acceleration(std::span<const Real> f)
   felt.assign(nodes().sum.size(), Vec<D>::Zero());
   for (std::size_t k = 0; k < node_.size(); ++k) {
     const auto n = to_size(node_[k]);
-    // what a boundary takes up of the forces of jumps is a part of its reaction
-    const Vec<D> net = -Eigen::Map<const Vec<D>>(f.data() + k * D) * force_ - free_[k] * jump_force_[n];
+    const Vec<D> net = left_over(f, k);
     if (nodes().sum[n].mass > 0)
       felt[n] = net / nodes().sum[n].mass;
   }
@@ -447,7 +453,9 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
     const NodeSum<D>& sum = nodes().sum[to_size(node_[k])];
     NodeWork<D> of_node;
     of_node.gravity = sum.mass * gravity.dot(displacement(x, k)) / 2;
-    of_node.damping = (free_[k] * Eigen::Map<const Vec<D>>(f.data() + k * D)).dot(displacement(x, k)) / 2;
+    of_node.damping = -left_over(f, k).dot(displacement(x, k)) / 2;
+    const Vec<D> held = force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) + jump_force_[to_size(node_[k])];
+    of_node.damped = ForceAndMoment<D>::at(m_.problem.mesh.node(node_[k]), dt_ * held);
     of_node.mass = sum.mass;
     of_node.first_moment = sum.mass * m_.problem.mesh.node(node_[k]);
     at_end.add(of_node);

@@ -49,6 +49,7 @@ class LoadIncrement {
   bool find_residual(std::span<const Real> x, std::span<Real> f);
   Vec<D> net_force(Index node) const;
   void accept(std::span<const Real> x);
+  Vec<D> left_over(std::span<const Real> f, std::size_t k) const;
   void find_net_acceleration(std::span<const Real> f);
   void record_work(std::span<const Real> x);
   void record_particle_loads();
