@@ -4,7 +4,7 @@
 #include "solver/model/seepage.hpp"
 #include "solver/rigid/rigid_contacts.hpp"
 #include "solver/state/integrate.hpp"
-#include "solver/step_parts.hpp"
+#include "solver/step/step_parts.hpp"
 
 namespace talus {
 

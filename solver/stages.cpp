@@ -9,7 +9,7 @@
 #include "solver/each_particle.hpp"
 #include "solver/run_limits.hpp"
 #include "solver/stable_step.hpp"
-#include "solver/static_stage.hpp"
+#include "solver/statics/static_stage.hpp"
 
 namespace talus {
 
@@ -274,12 +274,20 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
                            m.state.energy.at_velocities(),
                            now.kinetic,
                            plastic_work(view_of(m, stage)),
-                           m.state.stage.first_residual};
+                           m.state.stage.first_residual,
+                           m.state.solve};
   if (stage.residual && m.state.stage.balanced < steps_in_balance)
     abort_run(m, before, watch,
               fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: {}; give it more duration or damping", stage.name,
                           stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration,
                           why_not_at_rest(rest_conditions(m, stage), m.state.stage.balanced, steps_in_balance)));
+  if (stage.equilibrium && m.state.residual > stage.equilibrium->most_unbalanced.value_or(std::numeric_limits<Real>::infinity()))
+    abort_run(
+        m, before, watch,
+        fmt::format("stage \"{}\"{} is not in equilibrium: unbalanced force {:.3g} of the loads, which only a stiffness of the solver "
+                    "holds, allowed {:.3g} (unbalanced); the soil carries less than the loads, or cells are too large",
+                    stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", m.state.residual,
+                    *stage.equilibrium->most_unbalanced));
   if (stage.residual)
     set_to_rest(m);
   if (stage.reset_displacement && !m.state.particles.x0.empty())

@@ -8,17 +8,10 @@
 #include <vector>
 
 #include "solver/model/model.hpp"
+#include "solver/options/equilibrium_options.hpp"
 #include "solver/stress/initial_stress.hpp"
 
 namespace talus {
-
-/// How a stage finds equilibrium by solving for it.
-struct EquilibriumOptions {
-  int increments = 10;    ///< in which its loads act, unless one is too large
-  Real residual = 1e-8;   ///< unbalanced force over the loads [-]
-  Real left_over = 1e-4;  ///< the same of the kernel's own balance at its end, without the stiffness that modes without any are given [-]
-  int most_cuts = 10;     ///< of an increment that is not solved, in halves
-};
 
 /// A phase of the analysis.
 struct Stage {
@@ -56,6 +49,7 @@ struct StageResult {
   EnergyLedger energy;
   Real kinetic_end{}, plastic_end{};  ///< [J]
   Real first_residual{};              ///< of its first step: how far the state that it began with was from balance
+  SolveLedger solve;                  ///< of a stage that solves for equilibrium
   static constexpr auto fields()
   {
     return std::tuple{saved("name", &StageResult::name),
@@ -67,7 +61,8 @@ struct StageResult {
                       saved("energy", &StageResult::energy),
                       saved("kinetic_end", &StageResult::kinetic_end),
                       saved("plastic_end", &StageResult::plastic_end),
-                      saved("first_residual", &StageResult::first_residual)};
+                      saved("first_residual", &StageResult::first_residual),
+                      saved("solve", &StageResult::solve)};
   }
 };
 

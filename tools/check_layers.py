@@ -45,6 +45,7 @@ THIRD_PARTY = [
     ("metis.h", ["mesh/partition.cpp"]),
     ("yaml-cpp/*", ["io/scene/reader.cpp"]),
     ("gmsh.h*", ["io/mesh/gmsh_*.cpp", "tests/io/load_mesh_test.cpp"]),
+    ("petsc*", ["io/equations/petsc_solver.cpp"]),
     ("gdal*", ["io/terrain/gdal_*"]),
     ("ogr_*", ["io/terrain/gdal_*"]),
     ("cpl_*", ["io/terrain/gdal_*"]),

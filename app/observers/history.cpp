@@ -166,6 +166,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
   add(run_columns(), "");
   if (start.problem.flow.any())
     add(flow_columns(), "");
+  if (start.problem.equations != nullptr)
+    add(solve_columns(), "");
   for (const BoundaryCondition<D>& wall : start.state.boundary.conditions())
     add(reaction_columns(), wall.name);
   for (const ContactLaw& contact : start.problem.contacts.laws)
@@ -219,6 +221,8 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
   put_all<D>(run_columns(), RunNow<D>{view, sums, centre, accounts.energy(view)}, row);
   if (view.problem.flow.any())
     put_all<D>(flow_columns(), view.state.flow, row);
+  if (view.problem.equations != nullptr)
+    put_all<D>(solve_columns(), view.state.solve, row);
   const Real elapsed = view.state.clock.time - state_.time;
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
     const Vec<D>& impulse = view.state.boundary.conditions()[w].impulse;

@@ -275,6 +275,10 @@ std::string table(const Recorder<D>& recorder)
        [](const EnergyNow& b) { return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.defect, b.dissipated())) : std::string("-"); });
   text += run_out_lines(recorder.runout().numbers());
   for (const StageResult& stage : recorder.stages())
+    if (stage.solve.increments > 0)
+      text += fmt::format("stage {}: {} increments solved, {} cut, in {} iterations of Newton's method and {} of linear systems\n",
+                          stage.name, stage.solve.increments, stage.solve.cuts, stage.solve.iterations, stage.solve.linear_iterations);
+  for (const StageResult& stage : recorder.stages())
     if (stage.kind != "run")
       text += fmt::format("stage {}: unbalanced force {:.3g} of the loads, {:.3g} when it began\n", stage.name, stage.residual,
                           stage.first_residual);

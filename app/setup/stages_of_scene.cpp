@@ -93,7 +93,7 @@ Stage stage_of(const StaticSpec& spec)
 {
   return {.duration = spec.duration,
           .elastic = spec.elastic,
-          .equilibrium = EquilibriumOptions{.increments = spec.increments, .residual = spec.residual},
+          .equilibrium = EquilibriumOptions{.increments = spec.increments, .residual = spec.residual, .most_unbalanced = spec.unbalanced},
           .start_stress = {},
           .reset_displacement = spec.reset_displacement,
           .where = spec.where};

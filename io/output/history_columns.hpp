@@ -93,6 +93,20 @@ constexpr auto flow_columns()
                        [](const auto& flow) { return flow.residual; })};
 }
 
+/// Columns of stages that solve for equilibrium.
+constexpr auto solve_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{quantity<number>("newton_iterations", "-", "of the last increment of a stage that solves for equilibrium",
+                                     [](const auto& solve) { return solve.last_iterations; }),
+                    quantity<number>("linear_iterations", "-", "of the linear systems in them",
+                                     [](const auto& solve) { return solve.last_linear_iterations; }),
+                    quantity<number>("solve_residual", "-", "what is left of the equations that the increment solved, over the loads",
+                                     [](const auto& solve) { return solve.last_residual; }),
+                    quantity<number>("increment_cuts", "-", "increments of the stage that were not solved and were cut in halves",
+                                     [](const auto& solve) { return solve.cuts; })};
+}
+
 /// Columns of each rigid body.
 constexpr auto rigid_columns()
 {

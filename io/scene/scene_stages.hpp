@@ -195,7 +195,7 @@ struct RunSpec : StageChanges {
 /// A stage that solves for equilibrium under loads that grow in increments: no inertia, no time.
 struct StaticSpec : StageChanges {
   static constexpr std::string_view name = "static";
-  Real duration = 1, residual = 1e-8;
+  Real duration = 1, residual = 1e-8, unbalanced = 1e-3;
   int increments = 10;
   std::optional<bool> grow;
   bool elastic = false, reset_displacement = false;
@@ -209,6 +209,10 @@ struct StaticSpec : StageChanges {
                      "in which the loads act; one that is not solved is cut in halves, and the next ones grow again"),
             optional("residual", &StaticSpec::residual, positive, "-",
                      "an increment is solved when the unbalanced nodal forces are below this share of the loads"),
+            optional(
+                "unbalanced", &StaticSpec::unbalanced, positive, "-",
+                "the stage fails if at its end a larger share of the loads is out of balance without the stiffness that the solver gives "
+                "to displacements that the kernel does not see"),
             optional("grow", &StaticSpec::grow, any, "-",
                      "whether gravity and loads grow from zero; default true in the first stage without initial_stress, else false: they "
                      "act from its beginning, and tables and prescribed velocities alone change in it"),

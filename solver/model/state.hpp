@@ -70,9 +70,11 @@ struct SolveLedger {
   std::int64_t increments = 0, cuts = 0;                                ///< in this stage
   std::int64_t iterations = 0, linear_iterations = 0, evaluations = 0;  ///< in this stage: of Newton's method, of linear systems, of forces
   std::int64_t last_iterations = 0, last_linear_iterations = 0;         ///< of the last increment
+  Real last_residual = 0;                                               ///< of the equations of the last increment, over the loads [-]
   static constexpr auto fields()
   {
-    return std::tuple{saved("increment", &SolveLedger::increment),
+    return std::tuple{saved("last_residual", &SolveLedger::last_residual),
+                      saved("increment", &SolveLedger::increment),
                       saved("increments", &SolveLedger::increments),
                       saved("cuts", &SolveLedger::cuts),
                       saved("iterations", &SolveLedger::iterations),

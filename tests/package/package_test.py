@@ -53,7 +53,7 @@ class Package(unittest.TestCase):
     def test_the_files_are_there_and_no_others_of_the_build(self):
         for name in FILES:
             self.assertTrue((self.root / name).is_file(), name)
-        for part in ("gmsh", "gdal"):
+        for part in ("gmsh", "gdal", "petsc"):
             self.assertTrue(list(self.root.glob(f"usr/libexec/talus/**/libtalus_{part}.so")), part)
         self.assertEqual((Path(self.build) / "report.html").exists(), (self.root / "usr/libexec/talus/report.html").exists())
         has_completion = run(self.program, "completion", "bash", **self.clean).returncode == 0
@@ -91,7 +91,7 @@ class Package(unittest.TestCase):
 
     def test_the_package_names_what_it_needs(self):
         told = run("dpkg-deb", "-f", self.package).stdout
-        for package in ("libgmsh4.8", "libgdal32", "libvtk9.1", "libhdf5-openmpi-103-1", "libopenmpi3", "libgomp1", "libmetis5"):
+        for package in ("libgmsh4.8", "libgdal32", "libvtk9.1", "libhdf5-openmpi-103-1", "libpetsc-real3.18", "libopenmpi3", "libgomp1", "libmetis5"):
             self.assertRegex(told, rf"Depends:.*\b{re.escape(package)}\b")
         for package in ("xvfb", "xauth", "libgl1-mesa-dri", "python3-h5py"):
             self.assertRegex(told, rf"Recommends:.*\b{package}\b")

@@ -58,5 +58,100 @@ TEST_F(StaticStage, StaysAtRestInTheStageBehindIt)
   EXPECT_LT(last(history("run"), "kinetic"), 1e-6 * 1e4 * 6.2 * settlement(6.2, 1e4, 5e5));
 }
 
+/// Kinetic energy aside, all of history.csv.
+std::string two_stages()
+{
+  return column("  - {type: static, increments: 3}\n  - {type: run, duration: 0.05}\n", ", checkpoint: {steps: 1, keep: 100}");
+}
+
+TEST_F(StaticStage, GoesOnFromAnyIncrementToTheSameBits)
+{
+  write("column.yaml", two_stages());
+  ASSERT_EQ(talus("run column.yaml --out whole --threads 1").code, 0);
+  ASSERT_EQ(talus("run column.yaml --out parts --threads 2 --until 2").code, 0);
+  const Outcome rest = talus("run --resume parts");
+  ASSERT_EQ(rest.code, 0) << rest.err;
+  EXPECT_EQ(read("whole/history.csv"), read("parts/history.csv"));
+}
+
+TEST_F(StaticStage, FindsOnTwoRanksWhatItFindsOnOne)
+{
+  write("column.yaml", column("  - {type: static, increments: 3}\n"));
+  ASSERT_EQ(talus("run column.yaml --out one").code, 0);
+  const Outcome two = talus("run column.yaml --out two", launcher_of(2));
+  ASSERT_EQ(two.code, 0) << two.err;
+  const Real settled = last(history("one"), "top_uy");
+  EXPECT_NEAR(last(history("two"), "top_uy"), settled, 1e-10 * std::abs(settled));
+  EXPECT_NEAR(last(history("two"), "top_syy"), last(history("one"), "top_syy"), 1e-8 * 6.2e4);
+}
+
+/// A block at that height above a floor, under a force of `tilt` of its weight along it.
+std::string block(Real tilt, Real low = 0)
+{
+  return "title: Block\ndimension: 2\n"
+         "mesh: {grid: {low: [0, 0], high: [4, 2], cells: [16, 8]}}\n"
+         "materials: [{name: stiff, law: neo_hookean, density: 1000, youngs_modulus: 1.0e7, poisson_ratio: 0.3}]\n"
+         "bodies: [{name: block, material: stiff, shape: {type: box, low: [1, " +
+         std::to_string(low) + "], high: [2, " + std::to_string(low + 0.7) +
+         "]}, particles_per_cell: 6}]\n"
+         "loads: [{type: gravity, acceleration: [" +
+         std::to_string(10 * tilt) + ", -10]}]\n" +
+         "boundaries: [{type: friction, on: y_min, coefficient: 0.4}]\n"
+         "stages: [{type: static, increments: 4}]\noutputs: {history: {every: 1}}\n";
+}
+
+TEST_F(StaticStage, KnowsCoulombFriction)
+{
+  write("block.yaml", block(0.3));
+  const Outcome run = talus("run block.yaml --out run");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Real weight = 1000 * 10 * 0.7;
+  EXPECT_NEAR(last(history("run"), "reaction_y_min_y"), weight, 1e-6 * weight);
+  EXPECT_NEAR(last(history("run"), "reaction_y_min_x"), -0.3 * weight, 1e-6 * weight);
+}
+
+TEST_F(StaticStage, SaysWhereAMechanismBegins)
+{
+  write("block.yaml", block(0.5));
+  const Outcome run = talus("run block.yaml --out run");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_NE(run.err.find("there is no equilibrium at"), run.err.npos) << run.err;
+  EXPECT_NE(run.err.find("what moves most is at ("), run.err.npos) << run.err;
+}
+
+TEST_F(StaticStage, SaysThatNothingHoldsTheBodies)
+{
+  write("block.yaml", block(0, 1));
+  const Outcome run = talus("run block.yaml --out run");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_NE(run.err.find("no boundary holds the bodies"), run.err.npos) << run.err;
+}
+
+/// Half of a strip pushed into weightless clay of strength c, on coarse cells: Prandtl's load, (2 + pi) c.
+TEST_F(StaticStage, FindsTheLimitLoadOfAStripOnClay)
+{
+  write("strip.yaml", R"(title: Strip
+dimension: 2
+mesh:
+  size: 1
+  regions:
+    - {name: clay, shape: {type: box, low: [0, 0], high: [20, 10]}}
+    - {name: strip, shape: {type: box, low: [0, 10], high: [4, 11]}}
+    - {name: air, shape: {type: box, low: [4, 10], high: [20, 11]}}
+materials: [{name: clay, law: von_mises, density: 2000, shear_modulus: 0.1e9, bulk_modulus: 0.2e9, yield_stress: 173205.08}]
+bodies: [{name: clay, material: clay, region: clay, particles_per_cell: 4, f_bar: true}]
+boundaries:
+  - {type: velocity, on: strip, velocity: [0, -0.1]}
+  - {type: roller, on: x_min}
+  - {type: roller, on: x_max}
+  - {type: fixed, on: y_min}
+stages: [{type: quasi_static, duration: 1, increments: 20}]
+outputs: {history: {every: 0.05}}
+)");
+  const Outcome run = talus("run strip.yaml --out run");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NEAR(-last(history("run"), "reaction_strip_y") / (4 * 1e5), 5.142, 0.04 * 5.142);
+}
+
 }  // namespace
 }  // namespace talus::static_stage_test

@@ -1,4 +1,4 @@
-#include "solver/step_parts.hpp"
+#include "solver/step/step_parts.hpp"
 
 #include "solver/state/integrate.hpp"
 

@@ -4,8 +4,10 @@
 #include <string>
 
 #include "core/nonlinear_solver.hpp"
-#include "solver/gradient_jumps.hpp"
 #include "solver/model/model.hpp"
+#include "solver/statics/elastic_stiffness.hpp"
+#include "solver/statics/gradient_jumps.hpp"
+#include "solver/statics/unknowns.hpp"
 
 namespace talus {
 
@@ -39,9 +41,7 @@ class LoadIncrement {
 
   void restore();
   bool find_forces(ActiveNodes active);
-  void list_unknowns();
   void set_stiffness();
-  void set_jumps(const std::vector<Vec3>& of_cell);
   void find_jump_forces();
   void set_constraints();
   void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
@@ -60,27 +60,25 @@ class LoadIncrement {
   const Nodes<D>& nodes() const noexcept { return m_.work.fields.front().nodes; }
   Vec<D> displacement(std::span<const Real> x, std::size_t k) const noexcept
   {
-    return length_ * Eigen::Map<const Vec<D>>(x.data() + k * D);
+    return unknowns_.length * Eigen::Map<const Vec<D>>(x.data() + k * D);
   }
 
   Model<D>& m_;
   Real dt_, time_, loads_from_;  ///< length, beginning, and time of the loads before it [s]
-  State<D> before_;  ///< at its beginning, the particles in their columns
+  State<D> before_;              ///< at its beginning, the particles in their columns
   CellOrder order_;
   bool sound_ = false;
 
-  std::vector<Index> node_;                                   ///< own nodes with a motion of their own
-  std::vector<Real> number_;                                  ///< by node: 1 + number of the node among those of all ranks; 0 without
-  std::vector<Mat<D>> free_;                                  ///< of each of `node_`: changes that its conditions leave free
-  std::vector<Real> stiffness_;                               ///< s of each of `node_` [N/m]
-  std::vector<Real> beyond_;  ///< the part of it that cells do not give [N/m]
-  std::vector<std::pair<Index, std::array<Real, 2>>> cells_;  ///< with particles: volume times P-wave modulus and shear modulus [N m]
+  Unknowns<D> unknowns_;
+  ElasticStiffness<D> elastic_;
+  std::vector<typename ElasticStiffness<D>::OfNode> stiffness_;  ///< of each node with unknowns, s above
   GradientJumps<D> jumps_;
-  std::vector<Vec<D>> u_, jump_force_;  ///< by node: displacements of the last trial [m], and the forces of their jumps [N]
-  HaloExchange copies_;                 ///< of values of nodes
-  Real length_ = 1, force_ = 1;         ///< units of unknowns [m] and residuals [N]
-  std::vector<Vec<D>> reaction_;        ///< of each of `node_` in the last trial [N]
-  std::vector<Vec<D>> weight_;          ///< of each of `node_` in the last trial [N]
+  Real force_ = 1;  ///< unit of residuals [N]
+  // Of each node with unknowns.
+  std::vector<Mat<D>> free_;               ///< changes of displacement that its conditions leave free
+  std::vector<Vec<D>> reaction_, weight_;  ///< in the last trial [N]
+  // By node.
+  std::vector<Vec<D>> u_, jump_force_;  ///< displacements of the last trial [m], and the forces of their jumps [N]
   std::int64_t evaluations_ = 0;
 };
 

@@ -1,11 +1,11 @@
-#include "solver/static_stage.hpp"
+#include "solver/statics/static_stage.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "solver/load_increment.hpp"
+#include "solver/statics/load_increment.hpp"
 
 namespace talus {
 
@@ -20,13 +20,14 @@ namespace {
 template <int D>
 void settle(Model<D>& m, const EquilibriumOptions& options, Real dt)
 {
-  constexpr int most = 8;
+  constexpr int most = 20;
+  constexpr Real gain = 0.97;
   for (int pass = 0; pass < most && m.state.residual > options.left_over; ++pass) {
     const Real before = m.state.residual;
     const State<D> state = m.state;
     const CellOrder order = m.work.order;
     auto increment = LoadIncrement<D>::once_more(m, dt);
-    if (!increment.is_sound() || increment.solve(*m.problem.equations, options.residual) || !(m.state.residual < 0.9 * before)) {
+    if (!increment.is_sound() || increment.solve(*m.problem.equations, options.residual) || !(m.state.residual < gain * before)) {
       m.work.errors.clear();
       if (!(m.state.residual < before)) {
         m.state = state;

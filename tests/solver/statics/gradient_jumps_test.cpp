@@ -1,5 +1,5 @@
 // Displacements that averaged gradients do not see have a stiffness, and linear ones have none.
-#include "solver/gradient_jumps.hpp"
+#include "solver/statics/gradient_jumps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,10 @@
 #pragma once
 // Steps without inertia: increments whose equilibrium is solved for.
-#include "solver/stages.hpp"
+#include <optional>
+#include <string>
+
+#include "solver/model/model.hpp"
+#include "solver/options/equilibrium_options.hpp"
 
 namespace talus {
 

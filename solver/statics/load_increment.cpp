@@ -1,0 +1,290 @@
+#include "solver/statics/load_increment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/statics/without_remap.hpp"
+#include "solver/step/step_parts.hpp"
+
+namespace talus {
+
+/// Of the shear stiffness, that of displacements that averaged gradients do not see.  With less, linear systems take more iterations; with more, what
+/// it holds takes more repetitions to come into balance: a column of 4, 8, 16 cells across is out of balance by .053, .021, .014 of its weight
+/// with 1, by .0060, .0058, .0032 with .1, by .0012, .0013, .0010 with .02 and 16 to 38 iterations.
+constexpr Real stiffness_of_jumps = 0.02;
+
+template <int D>
+LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt, Real loads_ahead)
+    : m_(m), dt_(dt), time_(m.state.clock.time), loads_from_(time_ + loads_ahead)
+{
+  end_sweeps(m_);
+  before_ = m_.state;
+  order_ = m_.work.order;
+  const WithoutRemap remap(m_.problem.transfer);
+  begin_sweeps(m_);
+  m_.work.sums.clear();
+  if (!find_forces(ActiveNodes::by_mass))
+    return;
+  m_.work.walls.find(m_.problem.mesh, *m_.work.strips, m_.work.fields);
+  sound_ = true;
+  unknowns_ = Unknowns<D>(m_.problem, nodes());
+  set_stiffness();
+  m_.work.strips.reset();
+  restore();
+}
+
+template <int D>
+void LoadIncrement<D>::restore()
+{
+  m_.work.strips.reset();
+  m_.state = before_;
+  m_.work.order = order_;
+}
+
+/// Sums the forces of the particles, as they are, at the nodes; false where some of them cannot take part.
+template <int D>
+bool LoadIncrement<D>::find_forces(ActiveNodes active)
+{
+  if (!locate_particles(m_))
+    return false;
+  m_.work.strips->send_leavers(m_.problem.subdomain, m_.work.migration);
+  m_.transfer->particles_to_nodes(m_);
+  m_.transfer->assemble_nodes(m_);
+  apply_nodal_loads(m_);
+  m_.work.fields.front().small_mass_nodes.lump(m_.problem.mesh, m_.problem.own, nodes(), active);
+  return true;
+}
+
+/// The stiffness of the nodes, and that of displacements that averaged gradients do not see.
+template <int D>
+void LoadIncrement<D>::set_stiffness()
+{
+  const Problem<D>& problem = m_.problem;
+  elastic_ = ElasticStiffness<D>(problem.mesh, before_);
+  stiffness_ = elastic_.of_nodes(problem, unknowns_);
+  std::vector<Real> filled = elastic_.filled(), shear = elastic_.shear();
+  if (!problem.subdomain.alone()) {
+    HaloExchange cells = copies_of_cells(*problem.ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
+    for (std::vector<Real>* const values : {&filled, &shear}) {
+      cells.send(*values, Numbers{});
+      cells.take(*values, Numbers{});
+    }
+  }
+  for (Real& one : shear)
+    one *= stiffness_of_jumps;
+  jumps_ = GradientJumps<D>(problem.mesh, filled, shear);
+}
+
+/// The forces of the displacements that averaged gradients do not see, at nodes with a motion of their own.
+template <int D>
+void LoadIncrement<D>::find_jump_forces()
+{
+  u_.assign(to_size(m_.problem.mesh.n_nodes()), Vec<D>::Zero());
+  nodes().in_use.for_each([&](Index n) { u_[to_size(n)] = dt_ * nodes().motion[to_size(n)].v; });
+  unknowns_.send(u_);
+  jump_force_.assign(u_.size(), Vec<D>::Zero());
+  jumps_.add_forces(m_.problem.mesh, u_, jump_force_);
+  m_.work.fields.front().small_mass_nodes.give(
+      m_.problem.mesh, m_.problem.own, [](Index, const Vec<D>& force) { return force; }, jump_force_);
+}
+
+/// Which changes of displacement the conditions leave free, as they were in the last trial.
+template <int D>
+void LoadIncrement<D>::set_constraints()
+{
+  free_.clear();
+  for (const Index n : unknowns_.node)
+    free_.push_back(m_.state.boundary.free_changes(nodes().of_field(n), nodes().motion[to_size(n)].v));
+}
+
+/// The entries of the preconditioner: elastic stiffness of what the conditions leave free, and that of the nodes of the rest.
+template <int D>
+void LoadIncrement<D>::add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const
+{
+  const Mesh<D>& mesh = m_.problem.mesh;
+  const auto add_block = [&](Index i, Index j, const Mat<D>& block) {
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b)
+        add(unknowns_.first(i) + a, unknowns_.first(j) + b, unknowns_.length / force_ * block(a, b));
+  };
+  /// Calls f(node, share) for the nodes with unknowns that move a node.
+  const auto for_each_mover = [&](Index n, auto&& f) {
+    if (unknowns_.has(n))
+      f(n, Real{1});
+    else
+      m_.work.fields.front().small_mass_nodes.for_each_host(mesh, n, [&](Index host, Real share) {
+        if (unknowns_.has(host))
+          f(host, share);
+      });
+  };
+  const auto freedom = [&](Index n) -> Mat<D> {
+    const Index k = unknowns_.row[to_size(n)];
+    return k != none ? free_[to_size(k)] : m_.state.boundary.free_changes(nodes().of_field(n), Vec<D>::Zero());
+  };
+  elastic_.for_each_block(mesh, [&](Index c, std::size_t a, std::size_t b, const Mat<D>& block) {
+    for_each_mover(mesh.cell(c)[a], [&](Index i, Real share_i) {
+      for_each_mover(mesh.cell(c)[b], [&](Index j, Real share_j) { add_block(i, j, share_i * share_j * freedom(i) * block); });
+    });
+  });
+  for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
+    add_block(unknowns_.node[k], unknowns_.node[k], stiffness_[k].all * (Mat<D>::Identity() - free_[k]) + stiffness_[k].beyond * free_[k]);
+}
+
+/// Moves the particles from where the increment begins; then finds the forces on the nodes, or stays there.  False where a particle cannot follow.
+template <int D>
+bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
+{
+  restore();
+  ++evaluations_;
+  Workspace<D>& work = m_.work;
+  const WithoutRemap remap(m_.problem.transfer);
+  begin_sweeps(m_);
+  work.sums.clear();
+  const auto give_up = [&] {
+    work.errors.clear();
+    return false;
+  };
+  if (!find_forces(ActiveNodes::as_before))
+    return give_up();
+  nodes().in_use.for_each([&](Index n) { nodes().motion[to_size(n)] = {}; });
+  for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
+    nodes().motion[to_size(unknowns_.node[k])].v = displacement(x, k) / dt_;
+  const Kick kick{time_, time_ + dt_ / 2};
+  work.fields.front().small_mass_nodes.extrapolate(m_.problem.mesh, m_.problem.own, kick, m_.state.boundary, nodes(),
+                                                   work.sums.beyond_nodes);
+  if (then == Then::stay)
+    record_work(x);
+  else
+    find_jump_forces();
+  m_.transfer->send_motion(m_);
+  clear_particle_sums(m_);
+  find_renewed_bodies(m_);
+  m_.transfer->nodes_to_particles(m_, kick, dt_, between_parts(m_, dt_));
+  m_.state.boundary = before_.boundary;  // without the impulses of masses, which have no inertia here
+  work.sums.beyond_nodes.clear();
+  work.errors.take(m_.problem.ranks->min(work.errors.word()));
+  if (then == Then::stay)
+    return true;
+  if (work.errors.worst())
+    return give_up();
+  m_.state.clock.time += dt_;
+  work.sums.on_mesh.clear();
+  return find_forces(ActiveNodes::as_before) || give_up();
+}
+
+/// Stress and loads at a node [N].
+template <int D>
+Vec<D> LoadIncrement<D>::net_force(Index node) const
+{
+  const Real end = time_ + dt_;
+  const NodeSum<D>& sum = nodes().sum[to_size(node)];
+  return sum.force + sum.mass * m_.problem.loads.gravity(end, m_.state.stage.ramp(end));
+}
+
+template <int D>
+bool LoadIncrement<D>::find_residual(std::span<const Real> x, std::span<Real> f)
+{
+  if (!move(x, Then::forces))
+    return false;
+  const Real end = time_ + dt_;
+  const Vec<D> gravity = m_.problem.loads.gravity(end, m_.state.stage.ramp(end));
+  const Kick kick{time_, time_ + dt_ / 2};
+  reaction_.resize(unknowns_.node.size());
+  weight_.resize(unknowns_.node.size());
+  for (std::size_t k = 0; k < unknowns_.node.size(); ++k) {
+    const Index n = unknowns_.node[k];
+    const Vec<D> u = displacement(x, k), r = net_force(n) + jump_force_[to_size(n)];
+    const Real s = stiffness_[k].all;
+    NodeMotion<D>& motion = nodes().motion[to_size(n)];
+    motion.change = r / (s * dt_);
+    motion.v = u / dt_ + motion.change;
+    const Vec<D> pushed = motion.v;
+    m_.state.boundary.apply(nodes().of_field(n), kick, s * dt_ * dt_, motion, m_.work.sums.at_nodes);
+    reaction_[k] = s * dt_ * (motion.v - pushed);
+    weight_[k] = nodes().sum[to_size(n)].mass * gravity;
+    Eigen::Map<Vec<D>>(f.data() + k * D) = -(r + reaction_[k]) / force_;
+  }
+  return true;
+}
+
+template <int D>
+Real LoadIncrement<D>::norm(std::span<const Real> f) const
+{
+  ExactSums<Real> squares;
+  for (const Real one : f)
+    squares.add(one * one);
+  m_.problem.ranks->sum(squares);
+  return std::sqrt(squares.value());
+}
+
+template <int D>
+std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, Real residual)
+{
+  std::vector<Real> x(unknowns_.size(), 0), f(x.size());
+  if (!find_residual(x, f)) {
+    restore();
+    return "the state that it begins with has particles that cannot be placed";
+  }
+  set_constraints();
+  const auto is_held = [](const Mat<D>& free) { return free != Mat<D>::Identity(); };
+  if (m_.problem.ranks->sum(static_cast<std::int64_t>(std::ranges::count_if(free_, is_held))) == 0) {
+    restore();
+    return "no boundary holds the bodies: give one of type fixed, roller or friction where they touch it";
+  }
+  // The size of the loads: weight, reactions and what is out of balance in the beginning.
+  std::vector<Real> loads(x.size());
+  Real size = norm(f);
+  for (const std::vector<Vec<D>>* all : {&reaction_, &weight_}) {
+    for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
+      Eigen::Map<Vec<D>>(loads.data() + k * D) = (*all)[k];
+    size = std::max(size, norm(loads));
+  }
+  NonlinearResult result;
+  result.converged = true;
+  if (size > 0) {
+    force_ = size;
+    const NonlinearEquations equations{.unknowns = x.size(),
+                                       .block = D,
+                                       .residual = [this](std::span<const Real> at, std::span<Real> to) { return find_residual(at, to); },
+                                       .add_preconditioner = [this](const auto& add) { add_stiffness(add); },
+                                       .tolerance = residual};
+    result = solver.solve(equations, x);
+  }
+  if (!result.converged) {
+    std::string why = fmt::format("{} after {} iterations, unbalanced force {:.3g} of the loads; {}", result.reason, result.iterations,
+                                  result.norm, place_of_largest(x));
+    restore();
+    return why;
+  }
+  accept(x);
+  SolveLedger& solve = m_.state.solve;
+  ++solve.increments;
+  solve.last_residual = result.norm;
+  solve.last_iterations = result.iterations, solve.last_linear_iterations = result.linear_iterations;
+  solve.iterations += result.iterations, solve.linear_iterations += result.linear_iterations, solve.evaluations += evaluations_;
+  return std::nullopt;
+}
+
+/// Where the nodes move most, in words: there a mechanism begins.
+template <int D>
+std::string LoadIncrement<D>::place_of_largest(std::span<const Real> x) const
+{
+  Real most = 0;
+  Vec<D> where = Vec<D>::Zero();
+  for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
+    if (const Real u = displacement(x, k).norm(); u > most)
+      most = u, where = m_.problem.mesh.node(unknowns_.node[k]);
+  const Real all = m_.problem.ranks->max(most);
+  const std::string here = most == all && most > 0 ? fmt::format("what moves most is at ({:.5g}), by {:.3g} m",
+                                                                 fmt::join(where.begin(), where.end(), ", "), most)
+                                                   : "";
+  const std::string text = m_.problem.ranks->first(here);
+  return text.empty() ? "nothing moves" : text;
+}
+
+template class LoadIncrement<2>;
+template class LoadIncrement<3>;
+
+}  // namespace talus
