@@ -293,16 +293,12 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent event)
   watch.lap(output_seconds_);
 
   warn(view);
-  last_.clock = view.state.clock;
-  last_.timings = view.state.timings;
-  last_.mass = view.state.mass;
-  last_.monitor = view.state.monitor;
+  last_.clock = view.state.clock, last_.timings = view.state.timings;
+  last_.mass = view.state.mass, last_.monitor = view.state.monitor, last_.unsettled = view.state.flow.unsettled;
   if (event != RunEvent::stage_done)
     return;
   done_before_ += view.state.clock.time - stage_start_;  // a stage that seeks equilibrium may end early
-  last_.mass_there = totals(view).mass;
-  last_.energy = accounts_.energy(view);
-  last_.momentum = accounts_.momentum(view);
+  last_.mass_there = totals(view).mass, last_.energy = accounts_.energy(view), last_.momentum = accounts_.momentum(view);
   ranks_ = ranks_of(view, traffic_begin_, step_begin_);
 }
 
@@ -323,6 +319,10 @@ void Recorder<D>::warn(const RunView<D>& view) const
   if (now.gaining > 0 && before.gaining == 0)
     warning(fmt::format("the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
                         now.gain, view.problem.limits.gain));
+  if (view.state.flow.unsettled > 0 && last_.unsettled == 0)
+    warning(
+        fmt::format("what pores hold was not found to the accuracy asked: {:.3g} of the water is missing, asked {:.3g}; see water_defect",
+                    view.state.flow.missing, FlowLedger::tolerance));
 }
 
 template <int D>

@@ -22,13 +22,15 @@ struct LastSeen {
   MassLedger<D> mass;
   Real mass_there{};  ///< mass of the particles [kg]
   LimitMonitor monitor;
+  Real unsettled{};  ///< of FlowLedger
   EnergyNow energy;
   MomentumNow<D> momentum;
   static constexpr auto fields()
   {
-    return std::tuple{saved("clock", &LastSeen::clock),           saved("timings", &LastSeen::timings), saved("mass", &LastSeen::mass),
-                      saved("mass_there", &LastSeen::mass_there), saved("watched", &LastSeen::monitor), saved("energy", &LastSeen::energy),
-                      saved("momentum", &LastSeen::momentum)};
+    return std::tuple{saved("clock", &LastSeen::clock),     saved("timings", &LastSeen::timings),
+                      saved("mass", &LastSeen::mass),       saved("mass_there", &LastSeen::mass_there),
+                      saved("watched", &LastSeen::monitor), saved("unsettled", &LastSeen::unsettled),
+                      saved("energy", &LastSeen::energy),   saved("momentum", &LastSeen::momentum)};
   }
 };
 

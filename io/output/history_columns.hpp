@@ -89,7 +89,8 @@ constexpr auto flow_columns()
                        [](const auto& flow) { return flow.seepage; }),
       quantity<number>("pressure_iterations", "-", "of the solver of the pore pressure in the last step",
                        [](const auto& flow) { return flow.iterations; }),
-      quantity<number>("pressure_residual", "-", "of that solver, over its right-hand side",
+      quantity<number>("pressure_residual", "-",
+                       "of that solver, over its right-hand side; with a retention the share of water that is missing",
                        [](const auto& flow) { return flow.residual; })};
 }
 

@@ -151,11 +151,15 @@ class Rules : private SceneRuleBase {
     };
     different_bodies("bodies", water.bodies);
     different_bodies("undrained", water.undrained);
+    const bool weighs = std::ranges::any_of(scene_.loads, [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); });
     if (water.flow)
       flow(water, *water.flow);
-    else if (std::none_of(scene_.loads.begin(), scene_.loads.end(),
-                          [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); }))
+    else if (!weighs)
       add("water", "water has no weight without a load of type gravity");
+    if (water.flow && !weighs && !water.flow->heads.empty())
+      add("water.flow.heads[0]", "open water has no weight without a load of type gravity");
+    if (water.flow && !weighs && water.flow->rain)
+      add("water.flow.rain", "rain does not fall without a load of type gravity");
   }
 
   void flow(const WaterSpec& water, const FlowSpec& flow)

@@ -104,8 +104,7 @@ void CoarsePressure<D>::prepare(Communicator& ranks, const Mesh<D>& mesh, const 
 }
 
 template <int D>
-void CoarsePressure<D>::add(Communicator& ranks, const OwnNodes& own, const std::vector<NodePressure>& at, const std::vector<Real>& x,
-                            std::vector<Real>& y)
+void CoarsePressure<D>::find(Communicator& ranks, const OwnNodes& own, const std::vector<NodePressure>& at, const std::vector<Real>& x)
 {
   if (!works_)
     return;
@@ -121,19 +120,10 @@ void CoarsePressure<D>::add(Communicator& ranks, const OwnNodes& own, const std:
     sums_[to_size(row)] = std::bit_cast<std::int64_t>(sum);
   });
   ranks.sum(std::span(sums_));  // each block belongs to one rank: bits plus zeros
-  Eigen::VectorXd right(n_rows_);
+  level_.resize(n_rows_);
   for (Index row = 0; row < n_rows_; ++row)
-    right[row] = std::bit_cast<Real>(sums_[to_size(row)]);
-  const Eigen::VectorXd level = factors_.solve(right);
-  parallel_for(static_cast<Index>(own.of_block.size()), [&](Index b) {
-    const IndexRange& nodes = own.of_block[to_size(b)];
-    const Index row = row_of_block_[to_size(block(nodes.begin))];
-    if (row == none)
-      return;
-    for (Index n = nodes.begin; n < nodes.end; ++n)
-      if (at[to_size(n)] == NodePressure::unknown)
-        y[to_size(n)] += level[row];
-  });
+    level_[row] = std::bit_cast<Real>(sums_[to_size(row)]);
+  level_ = factors_.solve(level_).eval();
 }
 
 template class CoarsePressure<2>;

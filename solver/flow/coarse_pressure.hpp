@@ -29,9 +29,14 @@ class CoarsePressure {
   void prepare(Communicator& ranks, const Mesh<D>& mesh, const OwnNodes& own, const std::vector<NodePressure>& around,
                const SparseRows<Real>& matrix, const SparseRows<Vec<D>>& push, const std::vector<Mat<D>>& free,
                const std::vector<Real>& lightness, Real dt);
-  /// y += R^T (R A R^T)^-1 R x for unknown pressures.  Collective.
-  void add(Communicator& ranks, const OwnNodes& own, const std::vector<NodePressure>& around, const std::vector<Real>& x,
-           std::vector<Real>& y);
+  /// Finds y = R^T (R A R^T)^-1 R x for unknown pressures.  Collective.
+  void find(Communicator& ranks, const OwnNodes& own, const std::vector<NodePressure>& around, const std::vector<Real>& x);
+  /// y at an own node with an unknown pressure.
+  Real at(Index n) const noexcept
+  {
+    const Index row = works_ ? row_of_block_[to_size(block(n))] : none;
+    return row == none ? 0 : level_[row];
+  }
 
  private:
   /// What the nodes of one block add to an entry of the matrix.
@@ -49,6 +54,7 @@ class CoarsePressure {
   std::vector<std::int64_t> sums_;  ///< bits of the sums of blocks
   std::vector<Index> row_of_block_;
   Index n_rows_ = 0;
+  Eigen::VectorXd level_;  ///< of the rows
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<Real>> factors_;
   bool works_ = false;
 };

@@ -34,11 +34,11 @@ struct Retention {
     const Real ratio = std::pow(-p / entry, exponent), m = 1 - 1 / exponent;
     return (1 - residual) * m * exponent * ratio / (-p) * std::pow(1 + ratio, -m - 1);
   }
-  /// What takes the place of dS/dp where the pressure goes from one value to another: the larger one of the slopes of the chord and at its end,
+  /// What takes the place of dS/dp where the pressure went from one value to another: the larger one of the slopes of the chord and at its end,
   /// as the slope alone vanishes where pores begin to drain.
   Real capacity(Real from, Real to) const noexcept
   {
-    const Real change = to - from, chord = std::abs(change) > Real{1e-9} * entry ? (saturation(to) - saturation(from)) / change : 0;
+    const Real change = to - from, chord = std::abs(change) > Real{1e-6} * entry ? (saturation(to) - saturation(from)) / change : 0;
     return std::max(capacity(to), chord);
   }
   /// The permeability over that of full pores.
@@ -70,9 +70,10 @@ struct FlowOfBody {
     const Real full = retention.saturation(from);
     return porosity_now * (retention.saturation(to) - full + full / bulk_modulus * (to - from));
   }
-  Real storage(Real porosity_now, Real from, Real to) const noexcept
+  /// `last`: the pressure before the one that it goes to in the search for it.
+  Real storage(Real porosity_now, Real from, Real last, Real to) const noexcept
   {
-    return porosity_now * (retention.saturation(from) / bulk_modulus + retention.capacity(from, to));
+    return porosity_now * (retention.saturation(from) / bulk_modulus + retention.capacity(last, to));
   }
   /// k = k_0 n^3 / (1 - n)^2 over the same of n_0 [m/s].
   Real permeability_at(Real n) const noexcept
@@ -141,23 +142,27 @@ inline void restrict_to(const Subdomain& subdomain, Flow& flow)
 
 /// The balance of water since the start of the run [m^D], and what the last step took to find the pressure.
 struct FlowLedger {
-  bool begun = false;                      ///< whether water has flowed in any stage
-  Real inflow{};                           ///< through boundaries with a rate
-  Real drained{};                          ///< out of boundaries with a pressure, the surface included
-  Real stored{};                           ///< by compression of water, at constant pore volume
-  Real squeezed{};                         ///< growth of the pore volume
-  Real seepage{};                          ///< energy that the flow has dissipated [J]
-  Real iterations{};                       ///< of the solver in the last step
-  Real total_iterations{};                 ///< since the start
-  Real residual{};                         ///< of the last step, over its right-hand side [-]
-  static constexpr Real tolerance = 1e-9;  ///< of that residual
+  bool begun = false;       ///< whether water has flowed in any stage
+  Real inflow{};            ///< through boundaries with a rate
+  Real drained{};           ///< out of boundaries with a pressure, the surface included
+  Real stored{};            ///< by compression of water, at constant pore volume
+  Real squeezed{};          ///< growth of the pore volume
+  Real seepage{};           ///< energy that the flow has dissipated [J]
+  Real iterations{};        ///< of the solver in the last step
+  Real total_iterations{};  ///< since the start
+  Real residual{};          ///< of the last step, over its right-hand side; with a retention the share of water that its equations lack [-]
+  bool found = true;        ///< whether the system of the last step was solved
+  Real unsettled{};         ///< number of steps whose contents did not become those of the pressures
+  Real missing{};           ///< the largest share of water that the equations of such a step lacked [-]
+  static constexpr Real tolerance = 1e-6;  ///< of the residual
   static constexpr auto fields()
   {
     return std::tuple{saved("begun", &FlowLedger::begun),           saved("inflow", &FlowLedger::inflow),
                       saved("drained", &FlowLedger::drained),       saved("stored", &FlowLedger::stored),
                       saved("squeezed", &FlowLedger::squeezed),     saved("seepage", &FlowLedger::seepage),
                       saved("iterations", &FlowLedger::iterations), saved("total_iterations", &FlowLedger::total_iterations),
-                      saved("residual", &FlowLedger::residual)};
+                      saved("residual", &FlowLedger::residual),     saved("found", &FlowLedger::found),
+                      saved("unsettled", &FlowLedger::unsettled),   saved("missing", &FlowLedger::missing)};
   }
   /// What has come in and has neither been stored nor gone out [m^D]: zero to the accuracy of the solver.
   Real defect() const noexcept { return inflow - drained - stored - squeezed; }

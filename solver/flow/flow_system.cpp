@@ -8,7 +8,6 @@ namespace {
 
 /// Of the projection of pressures, over the compressibility of the skeleton for plane waves.
 constexpr Real projection = 2;
-constexpr int most_iterations = 2000;
 /// A node is at the surface of the bodies if this share of the cells around is not exceeded, and Rain::full_cell of one of them.
 constexpr Real full_around = 0.75;
 
@@ -16,7 +15,7 @@ constexpr Real full_around = 0.75;
 
 template <int D>
 FlowSystem<D>::FlowSystem(const Mesh<D>& mesh)
-    : at_(to_size(mesh.n_nodes()), NodePressure::nothing), storage_(at_.size()), rain_(at_.size()), coarse_(mesh)
+    : at_(to_size(mesh.n_nodes()), NodePressure::nothing), storage_(at_.size(), to_size(mesh.n_cells())), rain_(at_.size()), coarse_(mesh)
 {
   const std::size_t n = at_.size(), entries = mesh.ring_of_node().item.size();
   for (auto* all : {&before_, &change_, &right_, &given_, &weight_, &inflow_, &squeezed_, &residual_, &direction_, &image_, &conditioned_,
@@ -160,110 +159,6 @@ void FlowSystem<D>::push(const FlowModel<D>& m, std::vector<Real>& x)
 }
 
 template <int D>
-void FlowSystem<D>::multiply(const FlowModel<D>& m, Real dt, std::vector<Real>& x)
-{
-  push(m, x);
-  m.field.nodes.in_use.for_each([&](Index u) {
-    Real sum = 0;
-    if (sees_water(u)) {
-      auto k = to_size(m.mesh.ring_of_node().begin[to_size(u)]);
-      for (const Index n : m.mesh.ring_of_node()[u]) {
-        sum += matrix_[k] * x[to_size(n)] + dt * divergence_[k].dot(velocity_[to_size(n)]);
-        ++k;
-      }
-    }
-    image_[to_size(u)] = sum;
-  });
-}
-
-template <int D>
-Real FlowSystem<D>::dot(const FlowModel<D>& m, const std::vector<Real>& x, const std::vector<Real>& y) const
-{
-  ExactSums<Real> sum;
-  add_ranges(m.field.nodes.in_use.own(), sum, [&](Index n) { return is_unknown(n) ? x[to_size(n)] * y[to_size(n)] : 0; });
-  m.ranks.sum(sum);
-  return sum.value();
-}
-
-template <int D>
-void FlowSystem<D>::take_contents(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step)
-{
-  m.field.nodes.in_use.for_each([&](Index n) {
-    if (!m.own.has(n) || !sees_water(n))
-      return;
-    const NodeStorage before = storage_[n];
-    storage_.find(m.mesh, cells, change_, n);
-    const auto ring = m.mesh.ring_of_node()[n];
-    const auto place = std::ranges::lower_bound(ring, n) - ring.begin();
-    matrix_[to_size(m.mesh.ring_of_node().begin[to_size(n)]) + to_size(static_cast<Index>(place))] += storage_[n].slope - before.slope;
-    diagonal_[to_size(n)] += storage_[n].slope - before.slope;
-    right_[to_size(n)] -= storage_[n].surplus - before.surplus;
-  });
-  prepare_coarse(m, step);
-}
-
-/// Pressures that alternate between two states are met half-way.
-template <int D>
-void FlowSystem<D>::solve_for_contents(const FlowModel<D>& m, const FlowStep<D>& step, FlowLedger& ledger,
-                                       const std::function<const FlowCells<D>&()>& find_contents)
-{
-  constexpr int most = 60, straight = 10;
-  const NodesInUse& in_use = m.field.nodes.in_use;
-  in_use.for_each([&](Index n) { before_[to_size(n)] = 0; });
-  for (int again = 0;; ++again) {
-    send(change_);
-    const FlowCells<D>* cells = &find_contents();
-    if (storage_.has_contents_of(m, *cells, change_, weight_, [&](Index n) { return sees_water(n); }) || again == most)
-      return;
-    if (again >= straight) {
-      in_use.for_each([&](Index n) { change_[to_size(n)] = (change_[to_size(n)] + before_[to_size(n)]) / 2; });
-      cells = &find_contents();
-    }
-    in_use.for_each([&](Index n) { before_[to_size(n)] = change_[to_size(n)]; });
-    take_contents(m, *cells, step);
-    solve(m, step, true, ledger);
-  }
-}
-
-/// Conjugate gradients [Hestenes & Stiefel 1952] from no change but the given ones on, or from what they have found before.
-template <int D>
-std::vector<Real>& FlowSystem<D>::solve(const FlowModel<D>& m, const FlowStep<D>& step, bool again, FlowLedger& ledger)
-{
-  const NodesInUse& in_use = m.field.nodes.in_use;
-  if (!again)
-    in_use.for_each([&](Index n) { change_[to_size(n)] = at_[to_size(n)] == NodePressure::given ? given_[to_size(n)] : 0; });
-  multiply(m, step.dt, change_);
-  in_use.for_each([&](Index n) { residual_[to_size(n)] = is_unknown(n) ? right_[to_size(n)] - image_[to_size(n)] : 0; });
-  const auto precondition = [&] {
-    in_use.for_each([&](Index n) { conditioned_[to_size(n)] = is_unknown(n) ? residual_[to_size(n)] / diagonal_[to_size(n)] : 0; });
-    coarse_.add(m.ranks, m.own, at_, residual_, conditioned_);
-    return dot(m, residual_, conditioned_);
-  };
-  Real now = precondition();
-  if (!again)
-    begin_ = now, ledger.iterations = 0;
-  const Real enough = 0.81 * FlowLedger::tolerance * FlowLedger::tolerance * begin_;
-  in_use.for_each([&](Index n) { direction_[to_size(n)] = conditioned_[to_size(n)]; });
-  int iterations = 0;
-  for (; now > enough && iterations < most_iterations; ++iterations) {
-    multiply(m, step.dt, direction_);
-    const Real length = now / dot(m, direction_, image_);
-    in_use.for_each([&](Index n) {
-      if (!is_unknown(n))
-        return;
-      change_[to_size(n)] += length * direction_[to_size(n)];
-      residual_[to_size(n)] -= length * image_[to_size(n)];
-    });
-    const Real next = precondition(), share = next / now;
-    now = next;
-    in_use.for_each([&](Index n) { direction_[to_size(n)] = conditioned_[to_size(n)] + share * direction_[to_size(n)]; });
-  }
-  ledger.iterations += iterations, ledger.total_iterations += iterations;
-  ledger.residual = begin_ > 0 ? std::sqrt(now / begin_) : begin_;
-  return change_;
-}
-
-template <int D>
 void FlowSystem<D>::change_velocities(const FlowModel<D>& m, const FlowStep<D>& step, std::vector<Real>& change, ExactSums<Real>& work)
 {
   push(m, change);
@@ -324,7 +219,7 @@ void FlowSystem<D>::find_right_side(const FlowModel<D>& m, const FlowCells<D>& c
       ++k;
     }
     squeezed_[to_size(u)] = squeezed;
-    right_[to_size(u)] = weight_[to_size(u)] + inflow_[to_size(u)] - squeezed - darcy - storage_[u].surplus;
+    right_[to_size(u)] = weight_[to_size(u)] + inflow_[to_size(u)] - squeezed - darcy - storage_.surplus(u);
     diagonal_[to_size(u)] = diagonal;
   });
 }
@@ -333,10 +228,10 @@ template <int D>
 void FlowSystem<D>::prepare(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure)
 {
   find_rows(m, cells, step);
-  m.field.nodes.in_use.for_each([&](Index n) { change_[to_size(n)] = 0; });
+  storage_.begin(m.mesh, cells);
   m.field.nodes.in_use.for_each([&](Index n) {
     if (m.own.has(n) && sees_water(n))
-      storage_.find(m.mesh, cells, change_, n);
+      storage_.find_surplus(m.mesh, cells, n);
   });
   find_responses(m, step);
   find_right_side(m, cells, step, pressure);

@@ -31,8 +31,8 @@ class FlowSystem {
 
   /// Finds rows, given pressures and how velocities answer, for the pressures p0 at nodes that see water.  Collective.
   void prepare(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure);
-  /// Finds p1 - p0, from the one found before on if `again`; adds the iterations and the residual to the ledger.  Collective.
-  std::vector<Real>& solve(const FlowModel<D>& m, const FlowStep<D>& step, bool again, FlowLedger& ledger);
+  /// Finds p1 - p0; adds the iterations and the residual to the ledger.  Collective.
+  std::vector<Real>& solve(const FlowModel<D>& m, const FlowStep<D>& step, FlowLedger& ledger);
   /// Solves the system again, until what pores take up is that of the pressures found.  find_contents() returns the cells with the contents
   /// of the changes of pressure that solve() has returned.  Collective.
   void solve_for_contents(const FlowModel<D>& m, const FlowStep<D>& step, FlowLedger& ledger,
@@ -55,22 +55,24 @@ class FlowSystem {
   void find_given_pressures(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure);
   void find_responses(const FlowModel<D>& m, const FlowStep<D>& step);
   void find_right_side(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure);
-  void take_contents(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step);
+  void take_contents(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, bool slopes);
+  void find_residual(const FlowModel<D>& m, const FlowStep<D>& step);
+  void iterate(const FlowModel<D>& m, const FlowStep<D>& step, bool again, FlowLedger& ledger);
+  Real precondition(const FlowModel<D>& m);
   void prepare_coarse(const FlowModel<D>& m, const FlowStep<D>& step);
   /// The force of pressures x on a node of this rank [N].
   Vec<D> force_at(const Mesh<D>& mesh, Index n, const std::vector<Real>& x) const;
   /// All such forces, and the changes of velocity by them.
   void push(const FlowModel<D>& m, std::vector<Real>& x);
   /// image_ = (S + dt H + dt kick B^T M^-1 C B) x.
-  void multiply(const FlowModel<D>& m, Real dt, std::vector<Real>& x);
-  Real dot(const FlowModel<D>& m, const std::vector<Real>& x, const std::vector<Real>& y) const;
+  Real multiply(const FlowModel<D>& m, Real dt, std::vector<Real>& x);
   bool sees_water(Index n) const noexcept { return at_[static_cast<std::size_t>(n)] != NodePressure::nothing; }
   bool is_unknown(Index n) const noexcept { return at_[static_cast<std::size_t>(n)] == NodePressure::unknown; }
 
   HaloExchange copies_;
   std::vector<NodePressure> at_, around_;     ///< around_: of the nodes of other ranks too
   std::vector<Real> change_, right_, given_;  ///< p1 - p0; the right-hand side; given changes
-  std::vector<Real> before_;                  ///< change_ of the system that was solved last
+  std::vector<Real> before_;                  ///< change_ before the system was solved last
   std::vector<Real> weight_, inflow_;         ///< dt G and dt Q
   std::vector<Real> squeezed_;                ///< dt B^T v, of the velocities that the step found
   Real begin_{};                              ///< norm of the residual without a change of pressure

@@ -8,6 +8,7 @@ template <int D>
 PorePressure<D>::PorePressure(const Mesh<D>& mesh)
     : pressure_(to_size(mesh.n_nodes())),
       trial_(pressure_.size()),
+      last_(pressure_.size()),
       seen_(pressure_.size()),
       cells_(mesh),
       system_(std::make_unique<FlowSystem<D>>(mesh))
@@ -17,6 +18,7 @@ template <int D>
 PorePressure<D>::PorePressure(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own)
     : pressure_(to_size(mesh.n_nodes())),
       trial_(pressure_.size()),
+      last_(pressure_.size()),
       seen_(pressure_.size()),
       cells_(ranks, mesh, subdomain),
       system_(std::make_unique<FlowSystem<D>>(ranks, mesh, subdomain, own))
@@ -55,14 +57,17 @@ void PorePressure<D>::advance(const FlowModel<D>& m, const std::vector<Material>
   system_->send(pressure_);
   system_->send(seen_);
   const bool retains = m.flow.any_retention();
-  if (retains)
-    cells_.find_contents(m.mesh, m.flow, strips, pressure_);
+  if (retains) {
+    cells_.find_contents(m.mesh, m.flow, strips, pressure_, pressure_);
+    in_use.for_each([&](Index n) { last_[to_size(n)] = pressure_[to_size(n)]; });
+  }
   system_->prepare(m, cells_, step, pressure_);
-  std::vector<Real>& change = system_->solve(m, step, false, ledger);
+  std::vector<Real>& change = system_->solve(m, step, ledger);
   if (retains)
     system_->solve_for_contents(m, step, ledger, [&]() -> const FlowCells<D>& {
       in_use.for_each([&](Index n) { trial_[to_size(n)] = pressure_[to_size(n)] + change[to_size(n)]; });
-      cells_.find_contents(m.mesh, m.flow, strips, trial_);
+      cells_.find_contents(m.mesh, m.flow, strips, trial_, last_);
+      in_use.for_each([&](Index n) { last_[to_size(n)] = trial_[to_size(n)]; });
       return cells_;
     });
   system_->change_velocities(m, step, change, work);

@@ -69,8 +69,8 @@ class PorePressure {
  private:
   void read_particles(const Mesh<D>& mesh, const OwnNodes& own, const NodesInUse& in_use);
 
-  std::vector<Real> pressure_, trial_;  ///< [Pa]; trial_: while pores that drain are found
-  std::vector<std::uint8_t> seen_;      ///< nodes of cells with water
+  std::vector<Real> pressure_, trial_, last_;  ///< [Pa]; trial_: while pores that drain are found; last_: those before
+  std::vector<std::uint8_t> seen_;             ///< nodes of cells with water
   FlowCells<D> cells_;
   std::unique_ptr<FlowSystem<D>> system_;
 };

@@ -32,7 +32,7 @@ void FlowSystem<D>::record(const FlowModel<D>& m, const FlowCells<D>& cells, con
     auto k = to_size(m.mesh.ring_of_node().begin[to_size(u)]);
     Real darcy = 0;
     one.squeezed = squeezed_[to_size(u)];
-    one.stored = (m.flow.any_retention() ? storage_[u].content - storage_[u].slope * change[to_size(u)] : 0);
+    one.stored = m.flow.any_retention() ? storage_.content(u) - storage_.stored(m.mesh, cells, change, u) : 0;
     for (const Index n : m.mesh.ring_of_node()[u]) {
       one.stored += (matrix_[k] - step.dt * darcy_[k]) * change[to_size(n)];
       one.squeezed += step.dt * divergence_[k].dot(velocity_[to_size(n)]);

@@ -116,7 +116,7 @@ TEST_F(FlowOfScene, TakesUpALoadAtOnceAndKeepsAccountOfItsWater)
   EXPECT_NEAR(last(table, "water_defect"), 0, 1e-8 * last(table, "water_drained"));
   EXPECT_GT(last(table, "seepage"), 0);
   EXPECT_GT(last(table, "pressure_iterations"), 0);
-  EXPECT_LT(last(table, "pressure_residual"), 1e-9);
+  EXPECT_LT(last(table, "pressure_residual"), 1e-6);
   // What the base carries: the load and the weight.
   EXPECT_NEAR(last(table, "reaction_y_min_y"), 1e4 + 2000 * 9.81, 0.15 * 3e4);
 }
