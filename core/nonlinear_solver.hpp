@@ -15,8 +15,8 @@ struct NonlinearEquations {
   int block = 1;             ///< unknowns of a node, which follow each other
   /// Computes f(x) of the own rows; false, on all ranks, where f is not defined.  Collective.
   std::function<bool(std::span<const Real> x, std::span<Real> f)> residual;
-  /// Calls add(row, column, value) for entries of a matrix like the derivative of f, with numbers across the ranks; entries of the same place
-  /// are added up.
+  /// Calls add(row, column, value) for entries of a matrix like the derivative of f, with numbers across the ranks; entries of the same
+  /// place are added up.
   std::function<void(const std::function<void(std::int64_t row, std::int64_t column, Real value)>& add)> add_preconditioner;
   Real tolerance = 1e-8;     ///< of the 2-norm of f
   int most_iterations = 50;  ///< of Newton's method

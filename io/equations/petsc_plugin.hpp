@@ -9,8 +9,8 @@ struct PetscPart {
   NonlinearSolver& (*solver)();
 };
 
-/// Newton's method on the residual alone, with GMRES, preconditioned by a factorization or algebraic multigrid of the matrix that the equations give.
-/// Throws EnvironmentError if the plugin is not beside the program or its libraries, or cannot be loaded.
+/// Newton's method on the residual alone, with GMRES, preconditioned by a factorization or algebraic multigrid of the matrix that the
+/// equations give. Throws EnvironmentError if the plugin is not beside the program or its libraries, or cannot be loaded.
 NonlinearSolver& petsc();
 
 }  // namespace talus

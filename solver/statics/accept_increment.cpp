@@ -13,8 +13,8 @@ Vec<D> LoadIncrement<D>::left_over(std::span<const Real> f, std::size_t k) const
   return -force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) - free_[k] * jump_force_[to_size(unknowns_.node[k])];
 }
 
-/// Half of the work of loads and gravity at the displacements, with forces as they are before these.  What is out of balance before and behind an
-/// increment does work that nothing takes up; it counts as damping.
+/// Half of the work of loads and gravity at the displacements, with forces as they are before these.  What is out of balance before and
+/// behind an increment does work that nothing takes up; it counts as damping.
 template <int D>
 void LoadIncrement<D>::record_work(std::span<const Real> x)
 {

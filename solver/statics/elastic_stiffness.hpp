@@ -1,5 +1,6 @@
 #pragma once
-// The elastic stiffness of the filled part of cells, with linear shape functions: what the equations of equilibrium are preconditioned with.
+// The elastic stiffness of the filled part of cells, with linear shape functions: what the equations of equilibrium are preconditioned
+// with.
 #include <vector>
 
 #include "solver/model/problem.hpp"

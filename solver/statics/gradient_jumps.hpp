@@ -7,14 +7,15 @@
 
 namespace talus {
 
-/// Kernels that average gradients over the cells around a node do not see displacements that alternate from node to node: such modes have no
-/// stiffness.  Nodes beyond a free surface that cuts cells have hardly any.  This gives them one, by the energy of what the average leaves out,
+/// Kernels that average gradients over the cells around a node do not see displacements that alternate from node to node: such modes have
+/// no stiffness.  Nodes beyond a free surface that cuts cells have hardly any.  This gives them one, by the energy of what the average
+/// leaves out,
 ///
 ///     W(u) = 1/2 sum_c sum_(n of c) |c| mu_c / (D + 1) |grad u_c - G_n|^2,     G_n = sum_c V_c grad u_c / sum_c V_c over the cells of n,
 ///
-/// over all cells with a node that a filled cell has, with the filled volume V_c [m^D] and a shear modulus mu_c [Pa] of the cells.  It vanishes for
-/// linear fields; of smooth ones it is of the order h^2, as the stabilization of Dohrmann & Bochev (Int. J. Numer. Meth. Fluids 46, 2004), which
-/// projects in the same way, and the ghost penalty of cut cells (Burman, C. R. Math. 348, 2010).
+/// over all cells with a node that a filled cell has, with the filled volume V_c [m^D] and a shear modulus mu_c [Pa] of the cells.  It
+/// vanishes for linear fields; of smooth ones it is of the order h^2, as the stabilization of Dohrmann & Bochev (Int. J. for Numerical
+/// Methods in Fluids 46, 2004), which projects in the same way, and the ghost penalty of cut cells (Burman, C. R. Math. 348, 2010).
 template <int D>
 class GradientJumps {
  public:

@@ -10,9 +10,9 @@
 
 namespace talus {
 
-/// Of the shear stiffness, that of displacements that averaged gradients do not see.  With less, linear systems take more iterations; with more, what
-/// it holds takes more repetitions to come into balance: a column of 4, 8, 16 cells across is out of balance by .053, .021, .014 of its weight
-/// with 1, by .0060, .0058, .0032 with .1, by .0012, .0013, .0010 with .02 and 16 to 38 iterations.
+/// Of the shear stiffness, that of displacements that averaged gradients do not see.  With less, linear systems take more iterations; with
+/// more, what it holds takes more repetitions to come into balance: a column of 4, 8, 16 cells across is out of balance by .053, .021, .014
+/// of its weight with 1, by .0060, .0058, .0032 with .1, by .0012, .0013, .0010 with .02 and 16 to 38 iterations.
 constexpr Real stiffness_of_jumps = 0.02;
 
 template <int D>
@@ -132,7 +132,8 @@ void LoadIncrement<D>::add_stiffness(const std::function<void(std::int64_t, std:
     add_block(unknowns_.node[k], unknowns_.node[k], stiffness_[k].all * (Mat<D>::Identity() - free_[k]) + stiffness_[k].beyond * free_[k]);
 }
 
-/// Moves the particles from where the increment begins; then finds the forces on the nodes, or stays there.  False where a particle cannot follow.
+/// Moves the particles from where the increment begins; then finds the forces on the nodes, or stays there.  False where a particle cannot
+/// follow.
 template <int D>
 bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
 {

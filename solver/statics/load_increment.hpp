@@ -11,13 +11,14 @@
 
 namespace talus {
 
-/// The equations of an increment of length dt [s].  The unknowns are the displacements u of the nodes with a motion of their own; a trial moves the
-/// particles from where they are by u, as a step with the velocities u / dt does, lets their laws find the stress, and sums forces r at the
-/// same nodes, with the weights of the new positions.  So the state that is found is in balance for the kernel of the steps that follow.
+/// The equations of an increment of length dt [s].  The unknowns are the displacements u of the nodes with a motion of their own; a trial
+/// moves the particles from where they are by u, as a step with the velocities u / dt does, lets their laws find the stress, and sums
+/// forces r at the same nodes, with the weights of the new positions.  So the state that is found is in balance for the kernel of the steps
+/// that follow.
 ///
 /// Boundary conditions act on u as on the velocities of a step:  f(u) = s (u - B(u + r(u) / s))  with the stiffness s of a node, B setting
-/// prescribed velocities, planes and Coulomb friction.  Of a free node f = -r; of a held one u is that of the boundary; where it presses on a
-/// wall, f = 0 is Signorini's and Coulomb's conditions (the natural map of Alart & Curnier, Comput. Methods Appl. Mech. Engrg. 92, 1991).
+/// prescribed velocities, planes and Coulomb friction.  Of a free node f = -r; of a held one u is that of the boundary; where it presses on
+/// a wall, f = 0 is Signorini's and Coulomb's conditions (the natural map of Alart & Curnier, Comput. Methods Appl. Mech. Engrg. 92, 1991).
 template <int D>
 class LoadIncrement {
  public:
@@ -33,7 +34,8 @@ class LoadIncrement {
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
 
-  /// Nothing where it was solved: the model is then at its end, with its balances.  Otherwise why not, and the model as it was.  Collective.
+  /// Nothing where it was solved: the model is then at its end, with its balances.  Otherwise why not, and the model as it was. 
+  /// Collective.
   std::optional<std::string> solve(NonlinearSolver& solver, Real residual);
 
  private:
