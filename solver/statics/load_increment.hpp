@@ -34,7 +34,7 @@ class LoadIncrement {
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
 
-  /// Nothing where it was solved: the model is then at its end, with its balances.  Otherwise why not, and the model as it was. 
+  /// Nothing where it was solved: the model is then at its end, with its balances.  Otherwise why not, and the model as it was.
   /// Collective.
   std::optional<std::string> solve(NonlinearSolver& solver, Real residual);
 
