@@ -261,7 +261,6 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, Real
   }
   accept(x);
   SolveLedger& solve = m_.state.solve;
-  ++solve.increments;
   solve.last_residual = result.norm;
   solve.last_iterations = result.iterations, solve.last_linear_iterations = result.linear_iterations;
   solve.iterations += result.iterations, solve.linear_iterations += result.linear_iterations, solve.evaluations += evaluations_;

@@ -53,6 +53,7 @@ std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions&
     const std::optional<std::string> why = increment.solve(*m.problem.equations, options.residual);
     SolveLedger& solve = m.state.solve;
     if (!why) {
+      ++solve.increments;
       solve.cuts += cuts;
       solve.increment = std::max(dt, cuts > 0 ? dt : wanted);
       if (cuts == 0 && solve.last_iterations <= easy_iterations)
