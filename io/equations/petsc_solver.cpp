@@ -152,7 +152,7 @@ std::string words_of(SNESConvergedReason reason)
     case SNES_DIVERGED_FNORM_NAN: return "the forces became infinite";
     case SNES_DIVERGED_MAX_IT: return "no balance was found";
     case SNES_DIVERGED_LINE_SEARCH: return "no step brought the forces nearer to balance";
-    case SNES_DIVERGED_LINEAR_SOLVE: return "the linear system was not solved";
+    case SNES_DIVERGED_LINEAR_SOLVE: return "the linear system was not solved, as where a part moves without resistance";
     default: return "Newton's method stopped (" + std::string(SNESConvergedReasons[reason]) + ")";
   }
 }

@@ -110,6 +110,10 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
   nodes().gravity = gravity, nodes().kick = dt_;
   record_particle_sums(m_);
   update_balances(m_);
+  if (loads_from_ > time_) {  // once more: no time passes, so there are no impulses
+    m_.state.momentum = before_.momentum;
+    m_.state.boundary = before_.boundary;
+  }
   m_.state.energy.internal_ahead = m_.state.energy.loads_ahead = 0;
   {
     const WithoutRemap remap(m_.problem.transfer);

@@ -38,7 +38,7 @@ auto ElasticStiffness<D>::of_nodes(const Problem<D>& problem, const Unknowns<D>&
     if (a == b)
       diagonal[to_size(mesh.cell(c)[a])] += block.trace() / D;
   });
-  const Real largest = problem.ranks->max(*std::ranges::max_element(diagonal));
+  const Real largest = problem.ranks->max(diagonal.empty() ? 0 : *std::ranges::max_element(diagonal));  // a rank may have no cells
   std::vector<OfNode> all;
   for (const Index n : unknowns.node) {
     const Real stiffness = std::max(diagonal[to_size(n)], least_stiffness * largest);

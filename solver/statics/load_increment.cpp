@@ -255,7 +255,7 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, Real
   }
   if (!result.converged) {
     std::string why = fmt::format("{} after {} iterations, unbalanced force {:.3g} of the loads; {}", result.reason, result.iterations,
-                                  result.norm, place_of_largest(x));
+                                  result.norm, place_of_failure(x, f));
     restore();
     return why;
   }
@@ -267,21 +267,22 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, Real
   return std::nullopt;
 }
 
-/// Where the nodes move most, in words: there a mechanism begins.
+/// Where the nodes move most, in words: there a mechanism begins.  Where none has moved, where the forces are least in balance.
 template <int D>
-std::string LoadIncrement<D>::place_of_largest(std::span<const Real> x) const
+std::string LoadIncrement<D>::place_of_failure(std::span<const Real> x, std::span<const Real> f) const
 {
-  Real most = 0;
-  Vec<D> where = Vec<D>::Zero();
-  for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
-    if (const Real u = displacement(x, k).norm(); u > most)
-      most = u, where = m_.problem.mesh.node(unknowns_.node[k]);
-  const Real all = m_.problem.ranks->max(most);
-  const std::string here = most == all && most > 0 ? fmt::format("what moves most is at ({:.5g}), by {:.3g} m",
-                                                                 fmt::join(where.begin(), where.end(), ", "), most)
-                                                   : "";
-  const std::string text = m_.problem.ranks->first(here);
-  return text.empty() ? "nothing moves" : text;
+  const auto largest = [&](std::span<const Real> values, Real unit, const char* what, const char* of_unit) {
+    Real most = 0;
+    Vec<D> where = Vec<D>::Zero();
+    for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
+      if (const Real size = unit * Eigen::Map<const Vec<D>>(values.data() + k * D).norm(); size > most)
+        most = size, where = m_.problem.mesh.node(unknowns_.node[k]);
+    const bool is_here = most > 0 && most == m_.problem.ranks->max(most);
+    return m_.problem.ranks->first(
+        is_here ? fmt::format("{} is at ({:.5g}), {:.3g} {}", what, fmt::join(where.begin(), where.end(), ", "), most, of_unit) : "");
+  };
+  const std::string moves = largest(x, unknowns_.length, "what moves most", "m");
+  return moves.empty() ? largest(f, force_, "the largest unbalanced force", "N") : moves;
 }
 
 template class LoadIncrement<2>;

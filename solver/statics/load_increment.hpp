@@ -29,7 +29,7 @@ class LoadIncrement {
   {
     m.state.clock.time -= dt;
     --m.state.clock.step;
-    return LoadIncrement(m, dt, dt);
+    return LoadIncrement(m, dt, dt);  // impulses of no time are left out
   }
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
@@ -55,7 +55,7 @@ class LoadIncrement {
   void find_net_acceleration(std::span<const Real> f);
   void record_work(std::span<const Real> x);
   void record_particle_loads();
-  std::string place_of_largest(std::span<const Real> x) const;
+  std::string place_of_failure(std::span<const Real> x, std::span<const Real> f) const;
   Real norm(std::span<const Real> f) const;
 
   Nodes<D>& nodes() noexcept { return m_.work.fields.front().nodes; }
