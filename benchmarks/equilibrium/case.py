@@ -9,8 +9,10 @@ PLACES = {"quick": (0,), "full": (0, 0.13, 0.31)}  # m: so much is the mesh wide
 COLUMN = {"quick": (2.5, 1.25), "full": (2.5, 1.25, 0.625)}  # m, cells
 MEMBRANE = {"quick": (("0.3", 4, 2), ("0.3", 4, 20), ("0.3", 2, 2), ("0.499", 4, 2)),  # Poisson's ratio, cells [m], increments
             "full": (("0.3", 4, 20), *((nu, size, 2) for nu in ("0.3", "0.499", "0.49999") for size in (4, 2, 1)))}
-FOOTING = {"quick": ((1, 50), (0.5, 50)), "full": ((1, 25), (1, 50), (1, 100), (0.5, 25), (0.5, 50), (0.5, 100), (0.25, 50))}  # m, increments
+FOOTING = {"quick": ((1, 50), (0.5, 50)),  # cells [m], increments
+           "full": ((1, 25), (1, 50), (1, 100), (0.5, 25), (0.5, 50), (0.5, 100), (0.25, 50))}
 CANTILEVER = {"quick": (("2", 0.5),), "full": tuple((load, size) for load in ("1", "2", "9.6") for size in (0.5, 0.35, 0.25))}  # load, m
+ELASTIC = {"quick": (0.25, 0.125), "full": (0.25, 0.125, 0.0625)}  # m
 CYLINDER = {"quick": (0.25,), "full": (0.25, 0.125, 0.0625)}  # m
 HIGH = {"column": (5, 57), "membrane": (54, 70), "cantilever": (11, 2), "cylinder": (2.5, 2.5)}  # m, upper corner of the mesh
 
@@ -114,7 +116,8 @@ def judge_membrane(group, nu, size, _):
 
 def loads_of(run, data):
     """Settlement [m] and load over a c of the strip."""
-    return data["settlement [m]"] * run.history["time"], np.abs(run.history["reaction_strip_y"]) / (data["half width [m]"] * data["strength [Pa]"])
+    unit = data["half width [m]"] * data["strength [Pa]"]
+    return data["settlement [m]"] * run.history["time"], np.abs(run.history["reaction_strip_y"]) / unit
 
 
 def slope(run, data):
@@ -175,9 +178,9 @@ class Hill:
         return (1 + self.ratio) / self.modulus * share * ((1 - 2 * self.ratio) * r + self.outer**2 / r)
 
 
-def ring(run):
+def ring(run, frame=-1):
     """Radius at the start, radial and hoop stress, outward displacement, and plastic strain of the particles, and their mass."""
-    frame = run.last_frame()
+    frame = run.frames[frame]
     place = start_of(frame)
     radius = np.linalg.norm(place, axis=1)
     x, y = (place / radius[:, None]).T
@@ -218,15 +221,53 @@ def judge_cylinder(group, size):
                           *judged("at most", "largest stress error"), 0.0),
             *group.result("outward displacement of the elastic part over the exact one", "-", lambda run: grown(run, exact),
                           *judged("within", "displacement within"), 1.0),
-            *group.result("plastic radius", "m", lambda run: yielded(run, exact), *judged("within", "plastic radius within"), exact.plastic)]
+            *group.result("plastic radius", "m", lambda run: yielded(run, exact), *judged("within", "plastic radius within"),
+                          exact.plastic)]
+
+
+class Lame(Hill):
+    """The same cylinder, elastic under a pressure at its inner side [Pa]."""
+
+    def __init__(self, data, pressure):
+        super().__init__(data)
+        self.share = pressure * self.inner**2 / (self.outer**2 - self.inner**2)
+
+    def stress(self, r):
+        return self.share * (1 - self.outer**2 / r**2), self.share * (1 + self.outer**2 / r**2)
+
+    def outward(self, r):
+        return (1 + self.ratio) / self.modulus * self.share * ((1 - 2 * self.ratio) * r + self.outer**2 / r)
+
+
+def elastic_errors(run, data, frame):
+    """Root mean square of the error of stress over the pressure, and the outward displacement over the exact one, in a frame of the run."""
+    pressure = data["pressure [Pa]"] * run.frames[frame].time
+    exact = Lame(data, pressure)
+    radius, radial, hoop, outward, _, mass = ring(run, frame)
+    wrong = (radial - exact.stress(radius)[0])**2 + (hoop - exact.stress(radius)[1])**2
+    return np.sqrt(np.average(wrong, weights=mass)) / pressure, np.average(outward / exact.outward(radius), weights=mass)
+
+
+def judge_elastic(group, size):
+    data, source = group.data, group.data["elastic source"]
+    judged = size <= 0.125
+    results = []
+    for frame, when in ((1, "under half of the pressure"), (2, "under the whole pressure, at the end of the stage")):
+        asked = [(criterion, data[key]) if judged else ("reported", None) for criterion, key in
+                 (("at most", "largest elastic stress error"), ("within", "displacement within"))]
+        results += [*group.result(f"elastic, error of radial and hoop stress over the pressure, rms, {when}", "-",
+                                  lambda run, frame=frame: elastic_errors(run, data, frame)[0], *asked[0], 0.0, source),
+                    *group.result(f"elastic, outward displacement over the exact one, {when}", "-",
+                                  lambda run, frame=frame: elastic_errors(run, data, frame)[1], *asked[1], 1.0, source)]
+    return results
 
 
 def draw(figure, groups):
     """Column, footing and cylinder: stress over height, load over settlement, stress over radius."""
     left, middle, right = figure.subplots(1, 3)
-    for (scene, *_), group in groups.items():
+    for (scene, *rest), group in groups.items():
         for place, run in group.ended.items():
-            if place:
+            if place or "elastic" in rest:
                 continue
             if scene == "footing":
                 middle.plot(*(column[:-1] for column in loads_of(run, group.data)), label=group.name)
@@ -256,7 +297,10 @@ def plan_of(level):
     """By scene and parameters: how a group is judged, and its changes to the scene."""
     elastica, beam = tools.module("elastica"), tools.reference("elastica")
     plan = {("column", size): (judge_column, {"mesh.size": size}) for size in COLUMN[level]}
-    plan |= {("footing", size, count): (judge_footing, {"mesh.size": size, "stages[0].increments": count}) for size, count in FOOTING[level]}
+    plan |= {("footing", size, count): (judge_footing, {"mesh.size": size, "stages[0].increments": count})
+             for size, count in FOOTING[level]}
+    plan |= {("cylinder", size, "elastic"): (judge_elastic, {"mesh.size": size, "materials[0].cohesion": 1e9, "stages[0].increments": 2,
+                                                             "outputs.particles.every": 0.5}) for size in ELASTIC[level]}
     plan |= {("cylinder", size): (judge_cylinder, {"mesh.size": size}) for size in CYLINDER[level]}
     plan |= {("membrane", nu, size, count): (judge_membrane, {"materials[0].poisson_ratio": float(nu), "mesh.size": size,
                                                               "stages[0].increments": count}) for nu, size, count in MEMBRANE[level]}
@@ -268,19 +312,23 @@ def plan_of(level):
 def evaluate(lab):
     """All scenes at the sizes of the level; of those whose run fails the failure is the result."""
     plan = plan_of(lab.level)
-    words = {"membrane": "nu {}, cells of {} m, {} increments", "cantilever": "load {}, cells of {} m", "footing": "cells of {} m, {} increments"}
-    groups = {key: Group(lab, key[0], words.get(key[0], "cells of {} m").format(*key[1:]), settings) for key, (_, settings) in plan.items()}
+    words = {"membrane": "nu {}, cells of {} m, {} increments", "cantilever": "load {}, cells of {} m",
+             "footing": "cells of {} m, {} increments"}
+    plain = {2: "cells of {} m", 3: "cells of {} m, {}"}
+    groups = {key: Group(lab, key[0], words.get(key[0], plain.get(len(key))).format(*key[1:]), settings)
+              for key, (_, settings) in plan.items()}
     results = []
     for key, group in groups.items():
         judge = plan[key][0]
-        results += judge(group) if key[0] == "column" else judge(group, *key[1:])
+        results += judge(group) if key[0] == "column" else judge(group, key[1]) if key[0] == "cylinder" else judge(group, *key[1:])
         results += balance(group)
-    for scene, measure, name in (("column", stress_error, "stress error of the column"), ("cylinder", ring_error, "stress error of the cylinder")):
+    for scene, measure in (("column", stress_error), ("cylinder", ring_error)):
         data = tools.reference(CASE)[scene]
         exact = data if scene == "column" else Hill(data)
-        of = {key[1]: group.ended for key, group in groups.items() if key[0] == scene and group.ended}
+        of = {key[1]: group.ended for key, group in groups.items() if key[0] == scene and len(key) == 2 and group.ended}
         if len(of) > 1:
-            lab.convergence(CASE, name, list(of), [tools.rms([measure(run, exact) for run in runs.values()]) for runs in of.values()], expected=1)
+            lab.convergence(CASE, f"stress error of the {scene}", list(of),
+                            [tools.rms([measure(run, exact) for run in runs.values()]) for runs in of.values()], expected=1)
     lab.figure(CASE, "verification_equilibrium", lambda figure: draw(figure, groups), size=(10.0, 3.4),
-               caption="States of equilibrium found without inertia: column, strip footing, and cylinder that yields to 1.5 m (lines: exact).")
+               caption="States of equilibrium found without inertia: column, strip footing, cylinder that yields to 1.5 m (lines: exact).")
     return results
