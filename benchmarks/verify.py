@@ -53,6 +53,7 @@ CASES = [
     "cook_membrane",
     "plate_with_hole",
     "elastica",
+    "equilibrium",
     "pulled_bar",
     "hertz_contact",
     "sphere_container",
