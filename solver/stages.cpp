@@ -286,7 +286,7 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
     abort_run(
         m, before, watch,
         fmt::format("stage \"{}\"{} is not in equilibrium: unbalanced force {:.3g} of the loads, which only a stiffness of the solver "
-                    "holds, allowed {:.3g} (unbalanced); the soil carries less than the loads, or cells are too large",
+                    "holds, allowed {:.3g} (unbalanced); take more increments or smaller cells; else the soil carries less than the loads",
                     stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", m.state.residual,
                     *stage.equilibrium->most_unbalanced));
   if (stage.residual)

@@ -20,6 +20,11 @@ namespace {
 /// Unknowns of all ranks up to which the matrix of the preconditioner is factorized.
 constexpr PetscInt most_factorized = 200000;
 
+/// Of a linear system.  GMRES keeps that many vectors: begun anew after fewer, it breaks down where materials are nearly incompressible.
+constexpr PetscInt most_linear_iterations = 400;
+/// Of the size of the unknowns, by which trials differ whose difference is a derivative.  With less, rounding of small strains counts.
+constexpr PetscReal relative_difference = 1e-7;
+
 void check(PetscErrorCode code, const char* call)
 {
   if (code == 0)
@@ -132,9 +137,9 @@ void set_linear_solver(SNES snes, PetscInt unknowns)
   PC pc = nullptr;
   TALUS_PETSC(SNESGetKSP, snes, &ksp);
   TALUS_PETSC(KSPSetType, ksp, KSPGMRES);
-  TALUS_PETSC(KSPGMRESSetRestart, ksp, 80);
+  TALUS_PETSC(KSPGMRESSetRestart, ksp, most_linear_iterations);
   TALUS_PETSC(KSPSetPCSide, ksp, PC_RIGHT);
-  TALUS_PETSC(KSPSetTolerances, ksp, 1e-3, PETSC_DEFAULT, PETSC_DEFAULT, 400);
+  TALUS_PETSC(KSPSetTolerances, ksp, 1e-3, PETSC_DEFAULT, PETSC_DEFAULT, most_linear_iterations);
   TALUS_PETSC(KSPGetPC, ksp, &pc);
   if (unknowns <= most_factorized) {
     TALUS_PETSC(PCSetType, pc, PCLU);
@@ -179,6 +184,7 @@ class PetscSolver final : public NonlinearSolver {
     TALUS_PETSC(SNESSetType, snes, SNESNEWTONLS);
     TALUS_PETSC(SNESSetFunction, snes, residual, find_residual, &context);
     TALUS_PETSC(MatCreateSNESMF, snes, &derivative);
+    TALUS_PETSC(MatMFFDSetFunctionError, derivative, relative_difference);
     TALUS_PETSC(SNESSetJacobian, snes, derivative, matrix, keep_matrices, &context);
     TALUS_PETSC(SNESSetLagPreconditioner, snes, -2);
     TALUS_PETSC(SNESSetTolerances, snes, equations.tolerance, 0, 0, equations.most_iterations, -1);

@@ -195,7 +195,7 @@ struct RunSpec : StageChanges {
 /// A stage that solves for equilibrium under loads that grow in increments: no inertia, no time.
 struct StaticSpec : StageChanges {
   static constexpr std::string_view name = "static";
-  Real duration = 1, residual = 1e-8, unbalanced = 1e-3;
+  Real duration = 1, residual = 1e-8, unbalanced = 2e-2;
   int increments = 10;
   std::optional<bool> grow;
   bool elastic = false, reset_displacement = false;

@@ -7,12 +7,11 @@
 namespace talus {
 
 struct EquilibriumOptions {
-  int increments = 10;                    ///< in which its loads act, unless one is too large
-  Real residual = 1e-8;                   ///< of the equations of an increment: unbalanced force over the loads [-]
-  std::optional<Real> most_unbalanced{};  ///< the stage fails if the share below is larger at its end [-]
-  /// Unbalanced force over the loads in the kernel's own balance, without the stiffness that modes without any are given, below which the
-  /// last increment is not repeated [-].
-  Real left_over = 1e-4;
+  int increments = 10;   ///< in which its loads act, unless one is too large
+  Real residual = 1e-8;  ///< of the equations of an increment: unbalanced force over the loads [-]
+  /// The stage fails if at its end more is out of balance in the kernel's own balance, without the stiffness that modes without any are
+  /// given: unbalanced force over the loads [-].
+  std::optional<Real> most_unbalanced{};
   int most_cuts = 10;  ///< of an increment that is not solved, in halves
 };
 

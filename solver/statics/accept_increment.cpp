@@ -18,7 +18,7 @@ Vec<D> LoadIncrement<D>::left_over(std::span<const Real> f, std::size_t k) const
 template <int D>
 void LoadIncrement<D>::record_work(std::span<const Real> x)
 {
-  const Real time = loads_from_, ramp = m_.state.stage.ramp(time);
+  const Real time = time_, ramp = m_.state.stage.ramp(time);
   const Vec<D> gravity = m_.problem.loads.gravity(time, ramp);
   nodes().kick = dt_ / 2;
   add_work(m_.problem.loads, time, ramp, m_.problem.own, nodes(), m_.work.sums.work_on_mesh);
@@ -110,10 +110,6 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
   nodes().gravity = gravity, nodes().kick = dt_;
   record_particle_sums(m_);
   update_balances(m_);
-  if (loads_from_ > time_) {  // once more: no time passes, so there are no impulses
-    m_.state.momentum = before_.momentum;
-    m_.state.boundary = before_.boundary;
-  }
   m_.state.energy.internal_ahead = m_.state.energy.loads_ahead = 0;
   {
     const WithoutRemap remap(m_.problem.transfer);

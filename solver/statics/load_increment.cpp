@@ -10,14 +10,12 @@
 
 namespace talus {
 
-/// Of the shear stiffness, that of displacements that averaged gradients do not see.  With less, linear systems take more iterations; with
-/// more, what it holds takes more repetitions to come into balance: a column of 4, 8, 16 cells across is out of balance by .053, .021, .014
-/// of its weight with 1, by .0060, .0058, .0032 with .1, by .0012, .0013, .0010 with .02 and 16 to 38 iterations.
-constexpr Real stiffness_of_jumps = 0.02;
+/// Of the shear stiffness, that of displacements that averaged gradients do not see.  With less they alternate, with more it carries a part
+/// of a limit load (docs/theory/statics.md, benchmarks/equilibrium).
+constexpr Real stiffness_of_jumps = 0.1;
 
 template <int D>
-LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt, Real loads_ahead)
-    : m_(m), dt_(dt), time_(m.state.clock.time), loads_from_(time_ + loads_ahead)
+LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt) : m_(m), dt_(dt), time_(m.state.clock.time)
 {
   end_sweeps(m_);
   before_ = m_.state;

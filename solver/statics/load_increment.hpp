@@ -22,15 +22,8 @@ namespace talus {
 template <int D>
 class LoadIncrement {
  public:
-  /// The particles must be at rest.  Loads before it are those of its beginning and `loads_ahead` [s].  Collective.
-  explicit LoadIncrement(Model<D>& m, Real dt, Real loads_ahead = 0);
-  /// An increment without length, at the end of one of length dt: what that has left out of balance.  Collective.
-  static LoadIncrement once_more(Model<D>& m, Real dt)
-  {
-    m.state.clock.time -= dt;
-    --m.state.clock.step;
-    return LoadIncrement(m, dt, dt);  // impulses of no time are left out
-  }
+  /// The particles must be at rest.  Collective.
+  LoadIncrement(Model<D>& m, Real dt);
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
 
@@ -66,8 +59,8 @@ class LoadIncrement {
   }
 
   Model<D>& m_;
-  Real dt_, time_, loads_from_;  ///< length, beginning, and time of the loads before it [s]
-  State<D> before_;              ///< at its beginning, the particles in their columns
+  Real dt_, time_;   ///< length and beginning [s]
+  State<D> before_;  ///< at its beginning, the particles in their columns
   CellOrder order_;
   bool sound_ = false;
 

@@ -13,39 +13,11 @@ namespace talus {
 constexpr int easy_iterations = 6;
 constexpr Real growth = 1.5;
 
-namespace {
-
-/// Repeats the last increment without its length until what the stiffness of modes without stiffness has held is in balance, or no longer
-/// becomes less.
-template <int D>
-void settle(Model<D>& m, const EquilibriumOptions& options, Real dt)
-{
-  constexpr int most = 20;
-  constexpr Real gain = 0.97;
-  for (int pass = 0; pass < most && m.state.residual > options.left_over; ++pass) {
-    const Real before = m.state.residual;
-    const State<D> state = m.state;
-    const CellOrder order = m.work.order;
-    auto increment = LoadIncrement<D>::once_more(m, dt);
-    if (!increment.is_sound() || increment.solve(*m.problem.equations, options.residual) || !(m.state.residual < gain * before)) {
-      m.work.errors.clear();
-      if (!(m.state.residual < before)) {
-        m.state = state;
-        m.work.order = order;
-      }
-      return;
-    }
-  }
-}
-
-}  // namespace
-
 template <int D>
 std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions& options, Real full, Real left)
 {
   const Real wanted = m.state.solve.increment > 0 ? std::min(m.state.solve.increment, full) : full;
   Real dt = left <= wanted * (1 + 1e-12) ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver at the end
-  const bool last = dt == left;
   for (int cuts = 0;; ++cuts) {
     LoadIncrement<D> increment(m, dt);
     if (!increment.is_sound())
@@ -58,8 +30,6 @@ std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions&
       solve.increment = std::max(dt, cuts > 0 ? dt : wanted);
       if (cuts == 0 && solve.last_iterations <= easy_iterations)
         solve.increment = std::min(full, growth * solve.increment);
-      if (last && cuts == 0)
-        settle(m, options, dt);
       return std::nullopt;
     }
     if (dt <= full * std::ldexp(1, -options.most_cuts))
