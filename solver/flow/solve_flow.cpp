@@ -168,7 +168,17 @@ void FlowSystem<D>::iterate(const FlowModel<D>& m, const FlowStep<D>& step, bool
   ledger.found = now <= enough;
 }
 
-template class FlowSystem<2>;
-template class FlowSystem<3>;
+#define TALUS_INSTANTIATE(D)                                                                                      \
+  template Real FlowSystem<D>::multiply(const FlowModel<D>&, Real, std::vector<Real>&);                           \
+  template Real FlowSystem<D>::precondition(const FlowModel<D>&);                                                 \
+  template void FlowSystem<D>::take_contents(const FlowModel<D>&, const FlowCells<D>&, const FlowStep<D>&, bool); \
+  template void FlowSystem<D>::find_residual(const FlowModel<D>&, const FlowStep<D>&);                            \
+  template void FlowSystem<D>::solve_for_contents(const FlowModel<D>&, const FlowStep<D>&, FlowLedger&,           \
+                                                  const std::function<const FlowCells<D>&()>&);                   \
+  template std::vector<Real>& FlowSystem<D>::solve(const FlowModel<D>&, const FlowStep<D>&, FlowLedger&);         \
+  template void FlowSystem<D>::iterate(const FlowModel<D>&, const FlowStep<D>&, bool, FlowLedger&);
+TALUS_INSTANTIATE(2)
+TALUS_INSTANTIATE(3)
+#undef TALUS_INSTANTIATE
 
 }  // namespace talus
