@@ -20,8 +20,6 @@ struct NonlinearEquations {
   std::function<void(const std::function<void(std::int64_t row, std::int64_t column, Real value)>& add)> add_preconditioner;
   Real tolerance = 1e-8;     ///< of the 2-norm of f
   int most_iterations = 50;  ///< of Newton's method
-  /// Called after each iteration of Newton's method with the norm of f, on all ranks.
-  std::function<void(int iteration, Real norm)> watch = [](int, Real) {};
 };
 
 struct NonlinearResult {
@@ -29,7 +27,6 @@ struct NonlinearResult {
   std::string reason;         ///< why not
   int iterations = 0;         ///< of Newton's method
   int linear_iterations = 0;  ///< of the linear systems in them
-  int evaluations = 0;        ///< of f
   Real norm = 0;              ///< of f at the end
 };
 

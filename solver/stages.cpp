@@ -10,6 +10,7 @@
 #include "solver/run_limits.hpp"
 #include "solver/stable_step.hpp"
 #include "solver/statics/static_stage.hpp"
+#include "solver/step/step_parts.hpp"
 
 namespace talus {
 
@@ -71,10 +72,8 @@ void set_to_rest(Model<D>& m)
   const Totals<D> now = totals(m);
   m.state.energy.set_to_rest = now.kinetic;
   m.state.momentum.rest += ForceAndMoment<D>::of(-now.momentum, -now.angular);
-  m.state.particles.v.assign(m.state.particles.v.size(), Vec<D>::Zero());
+  stop_particles(m);
   m.state.clock.lag = 0;
-  for (auto* affine : {&m.state.particles.L, &m.state.particles.C})
-    affine->assign(affine->size(), Mat<D>::Zero());
   for (RigidState<D>& rigid : m.state.rigid)
     rigid.v.setZero(), rigid.spin.setZero();
 }
@@ -175,9 +174,8 @@ std::optional<std::string> reason_to_stop(Model<D>& m, const Stage& stage, const
             m.problem.rigid.bodies[r].name, fmt::join(x.begin(), x.end(), ", "));
   if (!m.state.flow.found)
     return fmt::format(
-        "the pore pressure of the last step was not found: {:.3g} of the right-hand side were left after {} iterations; the state has "
-        "become "
-        "unsound, or permeabilities differ too much",
+        "the pore pressure of the last step was not found: {:.3g} of the right-hand side were left after {} iterations; the state "
+        "has become unsound, or permeabilities differ too much",
         m.state.flow.residual, m.state.flow.iterations);
   return exceeded_limit(m, Look::between_steps);
 }

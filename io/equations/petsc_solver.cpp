@@ -79,7 +79,6 @@ MPI_Comm comm_of_run()
 /// What PETSc's callbacks need.
 struct Context {
   const NonlinearEquations& equations;
-  int evaluations = 0;
   std::exception_ptr error;  ///< of a callback
 };
 
@@ -94,7 +93,6 @@ PetscErrorCode find_residual(SNES, ::Vec x, ::Vec f, void* context)
     TALUS_PETSC(VecGetArrayRead, x, &in);
     TALUS_PETSC(VecGetArray, f, &out);
     const auto size = static_cast<std::size_t>(n);
-    ++all.evaluations;
     if (!all.equations.residual({in, size}, {out, size}))
       std::fill_n(out, size, std::numeric_limits<Real>::infinity());  // of which line searches take a shorter step
     TALUS_PETSC(VecRestoreArray, f, &out);
@@ -110,12 +108,6 @@ PetscErrorCode keep_matrices(SNES, ::Vec, ::Mat derivative, ::Mat, void*)
 {
   MatAssemblyBegin(derivative, MAT_FINAL_ASSEMBLY);
   return MatAssemblyEnd(derivative, MAT_FINAL_ASSEMBLY);
-}
-
-PetscErrorCode watch(SNES, PetscInt iteration, PetscReal norm, void* context)
-{
-  static_cast<Context*>(context)->equations.watch(static_cast<int>(iteration), norm);
-  return 0;
 }
 
 void set_preconditioner(const NonlinearEquations& equations, ::Mat matrix)
@@ -188,7 +180,6 @@ class PetscSolver final : public NonlinearSolver {
     TALUS_PETSC(SNESSetJacobian, snes, derivative, matrix, keep_matrices, &context);
     TALUS_PETSC(SNESSetLagPreconditioner, snes, -2);
     TALUS_PETSC(SNESSetTolerances, snes, equations.tolerance, 0, 0, equations.most_iterations, -1);
-    TALUS_PETSC(SNESMonitorSet, snes, watch, &context, nullptr);
     PetscInt unknowns = 0;
     TALUS_PETSC(VecGetSize, solution, &unknowns);
     set_linear_solver(snes, unknowns);
@@ -197,11 +188,11 @@ class PetscSolver final : public NonlinearSolver {
     if (context.error)
       std::rethrow_exception(context.error);
     check(code, "SNESSolve");
-    return result_of(snes, context);
+    return result_of(snes);
   }
 
  private:
-  static NonlinearResult result_of(SNES snes, const Context& context)
+  static NonlinearResult result_of(SNES snes)
   {
     SNESConvergedReason reason{};
     PetscInt iterations = 0, linear = 0;
@@ -214,7 +205,6 @@ class PetscSolver final : public NonlinearSolver {
             .reason = reason > 0 ? std::string() : words_of(reason),
             .iterations = static_cast<int>(iterations),
             .linear_iterations = static_cast<int>(linear),
-            .evaluations = context.evaluations,
             .norm = norm};
   }
 };

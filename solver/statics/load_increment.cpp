@@ -173,15 +173,6 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   return find_forces(ActiveNodes::as_before) || give_up();
 }
 
-/// Stress and loads at a node [N].
-template <int D>
-Vec<D> LoadIncrement<D>::net_force(Index node) const
-{
-  const Real end = time_ + dt_;
-  const NodeSum<D>& sum = nodes().sum[to_size(node)];
-  return sum.force + sum.mass * m_.problem.loads.gravity(end, m_.state.stage.ramp(end));
-}
-
 template <int D>
 bool LoadIncrement<D>::find_residual(std::span<const Real> x, std::span<Real> f)
 {
@@ -194,7 +185,9 @@ bool LoadIncrement<D>::find_residual(std::span<const Real> x, std::span<Real> f)
   weight_.resize(unknowns_.node.size());
   for (std::size_t k = 0; k < unknowns_.node.size(); ++k) {
     const Index n = unknowns_.node[k];
-    const Vec<D> u = displacement(x, k), r = net_force(n) + jump_force_[to_size(n)];
+    const NodeSum<D>& sum = nodes().sum[to_size(n)];
+    weight_[k] = sum.mass * gravity;
+    const Vec<D> u = displacement(x, k), r = sum.force + weight_[k] + jump_force_[to_size(n)];
     const Real s = stiffness_[k].all;
     NodeMotion<D>& motion = nodes().motion[to_size(n)];
     motion.change = r / (s * dt_);
@@ -202,7 +195,6 @@ bool LoadIncrement<D>::find_residual(std::span<const Real> x, std::span<Real> f)
     const Vec<D> pushed = motion.v;
     m_.state.boundary.apply(nodes().of_field(n), kick, s * dt_ * dt_, motion, m_.work.sums.at_nodes);
     reaction_[k] = s * dt_ * (motion.v - pushed);
-    weight_[k] = nodes().sum[to_size(n)].mass * gravity;
     Eigen::Map<Vec<D>>(f.data() + k * D) = -(r + reaction_[k]) / force_;
   }
   return true;

@@ -42,7 +42,6 @@ class LoadIncrement {
   void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
   bool move(std::span<const Real> x, Then then);
   bool find_residual(std::span<const Real> x, std::span<Real> f);
-  Vec<D> net_force(Index node) const;
   void accept(std::span<const Real> x);
   Vec<D> left_over(std::span<const Real> f, std::size_t k) const;
   void find_net_acceleration(std::span<const Real> f);

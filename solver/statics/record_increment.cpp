@@ -18,10 +18,10 @@ Vec<D> LoadIncrement<D>::left_over(std::span<const Real> f, std::size_t k) const
 template <int D>
 void LoadIncrement<D>::record_work(std::span<const Real> x)
 {
-  const Real time = time_, ramp = m_.state.stage.ramp(time);
-  const Vec<D> gravity = m_.problem.loads.gravity(time, ramp);
+  const Real ramp = m_.state.stage.ramp(time_);
+  const Vec<D> gravity = m_.problem.loads.gravity(time_, ramp);
   nodes().kick = dt_ / 2;
-  add_work(m_.problem.loads, time, ramp, m_.problem.own, nodes(), m_.work.sums.work_on_mesh);
+  add_work(m_.problem.loads, time_, ramp, m_.problem.own, nodes(), m_.work.sums.work_on_mesh);
   for (std::size_t k = 0; k < unknowns_.node.size(); ++k) {
     const auto n = to_size(unknowns_.node[k]);
     NodeWork<D> of_node;
@@ -115,10 +115,7 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
     const WithoutRemap remap(m_.problem.transfer);
     end_sweeps(m_);
   }
-  Particles<D>& particles = m_.state.particles;
-  particles.v.assign(particles.v.size(), Vec<D>::Zero());
-  for (auto* affine : {&particles.L, &particles.C})
-    affine->assign(affine->size(), Mat<D>::Zero());
+  stop_particles(m_);
   m_.state.monitor.speed = 0;
   m_.state.clock = {.step = m_.state.clock.step + 1, .time = end, .dt = dt_, .lag = 0};
 }

@@ -102,6 +102,15 @@ BetweenParts between_parts(Model<D>& m, Real dt)
 }
 
 template <int D>
+void stop_particles(Model<D>& m)
+{
+  Particles<D>& particles = m.state.particles;
+  particles.v.assign(particles.v.size(), Vec<D>::Zero());
+  for (auto* affine : {&particles.L, &particles.C})
+    affine->assign(affine->size(), Mat<D>::Zero());
+}
+
+template <int D>
 void clear_particle_sums(Model<D>& m)
 {
   m.work.stress_sums.assign(m.work.strips->keys(), {});
@@ -162,6 +171,7 @@ void update_balances(Model<D>& m)
   template void apply_nodal_loads(Model<D>&);           \
   template void find_renewed_bodies(Model<D>&);         \
   template BetweenParts between_parts(Model<D>&, Real); \
+  template void stop_particles(Model<D>&);              \
   template void clear_particle_sums(Model<D>&);         \
   template void record_particle_sums(Model<D>&);        \
   template void update_balances(Model<D>&);

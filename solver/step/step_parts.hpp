@@ -21,6 +21,9 @@ void find_renewed_bodies(Model<D>& m);
 /// Averaged volumes are needed before the stress; heat is conducted and strains are averaged after it.
 template <int D>
 BetweenParts between_parts(Model<D>& m, Real dt);
+/// Sets the velocities of the particles in the columns to zero, with their gradients.
+template <int D>
+void stop_particles(Model<D>& m);
 template <int D>
 void clear_particle_sums(Model<D>& m);
 /// Collects what particles report of their stress and loads.
