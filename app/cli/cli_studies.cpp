@@ -60,7 +60,7 @@ void StudyCommands::add_fos(CLI::App& app)
 {
   CLI::App* fos =
       app.add_subcommand("fos", "find the factor of safety of a scene: by how much its strength can be divided before it fails");
-  fos->add_option("scene", fos_.scene, "scene file (.yaml) with a geostatic stage")->type_name(scene_value)->required();
+  fos->add_option("scene", fos_.scene, "scene file (.yaml) with a geostatic or static stage")->type_name(scene_value)->required();
   fos->add_option("--out", fos_.out, "folder of trials and table; default runs/<name of the scene>_fos")->type_name(folder_value);
   const auto number = [&](const char* name, auto& value, const char* help) {
     return fos->add_option(name, value, help)->check(number_above_zero());
@@ -68,8 +68,14 @@ void StudyCommands::add_fos(CLI::App& app)
   number("--from", fos_.range.from, "lowest factor that is tried first; default 0.5");
   number("--to", fos_.range.to, "highest factor that is tried first; default 3");
   number("--width", fos_.range.width, "how close holding and failing factors come; default 0.02");
-  number("--duration", fos_.duration, "of a trial [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
-  fos->add_option("--damping", fos_.damping, "local damping of a trial; default 0.3")->check(number_within(0.0, 0.9));
+  fos->add_option_function<std::string>(
+         "--trials", [this](const std::string& word) { fos_.trials = word == "static" ? TrialKind::equilibrium : TrialKind::run; },
+         "runs with inertia, or static equilibria; default as the stage that finds the state at rest")
+      ->type_name(one_of({"run", "static"}))
+      ->check(CLI::IsMember({"run", "static"}));
+  fos->add_option("--increments", fos_.increments, "of a static trial; default 6")->check(number_within(2, 1000));
+  number("--duration", fos_.duration, "of a run [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
+  fos->add_option("--damping", fos_.damping, "local damping of a run; default 0.3")->check(number_within(0.0, 0.9));
   number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
   number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 5e-4");
   fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');

@@ -93,7 +93,11 @@ Stage stage_of(const StaticSpec& spec)
 {
   return {.duration = spec.duration,
           .elastic = spec.elastic,
-          .equilibrium = EquilibriumOptions{.increments = spec.increments, .residual = spec.residual, .most_unbalanced = spec.unbalanced},
+          .equilibrium = EquilibriumOptions{.increments = spec.increments,
+                                            .residual = spec.residual,
+                                            .most_unbalanced = spec.unbalanced,
+                                            .most_iterations = spec.iterations,
+                                            .most_cuts = spec.cuts},
           .start_stress = {},
           .reset_displacement = spec.reset_displacement,
           .where = spec.where};
@@ -102,7 +106,9 @@ Stage stage_of(const QuasiStaticSpec& spec)
 {
   return {.duration = spec.duration,
           .elastic = spec.elastic,
-          .equilibrium = EquilibriumOptions{.increments = spec.increments, .residual = spec.residual},
+          .equilibrium =
+              EquilibriumOptions{
+                  .increments = spec.increments, .residual = spec.residual, .most_iterations = spec.iterations, .most_cuts = spec.cuts},
           .start_stress = {},
           .where = spec.where};
 }

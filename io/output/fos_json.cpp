@@ -37,6 +37,7 @@ void write_fos(const std::filesystem::path& file, const FosRecord& record)
                               {"moved [m]", number_or_null(trial.moved)},
                               {"growth", number_or_null(trial.growth)},
                               {"kinetic_over_peak", number_or_null(trial.liveliness)},
+                              {"steadiness", number_or_null(trial.steadiness)},
                               {"duration [s]", number_or_null(trial.duration)},
                               {"by_growth_alone", trial.by_growth_alone},
                               {"message", trial.message},

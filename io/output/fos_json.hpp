@@ -12,7 +12,7 @@ namespace talus {
 struct FosTrialRecord {
   Real factor{};
   std::string verdict, message;
-  std::optional<Real> moved, growth, liveliness, duration;  ///< [m, -, -, s]; nothing if the run ended early
+  std::optional<Real> moved, growth, liveliness, steadiness, duration;  ///< [m, -, -, -, s]; nothing if the run ended early
   bool by_growth_alone{};
   std::string folder, command, scene_digest;
 };

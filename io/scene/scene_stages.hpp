@@ -196,7 +196,7 @@ struct RunSpec : StageChanges {
 struct StaticSpec : StageChanges {
   static constexpr std::string_view name = "static";
   Real duration = 1, residual = 1e-8, unbalanced = 2e-2;
-  int increments = 10;
+  int increments = 10, iterations = 50, cuts = 10;
   std::optional<bool> grow;
   bool elastic = false, reset_displacement = false;
   std::optional<K0Spec> initial_stress;
@@ -209,6 +209,9 @@ struct StaticSpec : StageChanges {
                      "in which the loads act; one that is not solved is cut in halves, and the next ones grow again"),
             optional("residual", &StaticSpec::residual, positive, "-",
                      "an increment is solved when the unbalanced nodal forces are below this share of the loads"),
+            optional("iterations", &StaticSpec::iterations, at_least(1), "-", "most of Newton's method in an increment"),
+            optional("cuts", &StaticSpec::cuts, within(0, 30), "-",
+                     "how often an increment that is not solved is cut before the stage fails"),
             optional(
                 "unbalanced", &StaticSpec::unbalanced, positive, "-",
                 "the stage fails if at its end a larger share of the loads is out of balance without the stiffness that the solver gives "
@@ -232,7 +235,7 @@ struct StaticSpec : StageChanges {
 struct QuasiStaticSpec : StageChanges {
   static constexpr std::string_view name = "quasi_static";
   Real duration{}, residual = 1e-6;
-  int increments = 100;
+  int increments = 100, iterations = 50, cuts = 10;
   bool elastic = false;
   SourceLocation where;
   static constexpr auto fields()
@@ -243,6 +246,9 @@ struct QuasiStaticSpec : StageChanges {
                             "into which it is divided; one that is not solved is cut in halves, and the next ones grow again"),
                    optional("residual", &QuasiStaticSpec::residual, positive, "-",
                             "an increment is solved when the unbalanced nodal forces are below this share of the loads"),
+                   optional("iterations", &QuasiStaticSpec::iterations, at_least(1), "-", "most of Newton's method in an increment"),
+                   optional("cuts", &QuasiStaticSpec::cuts, within(0, 30), "-",
+                            "how often an increment that is not solved is cut before the stage fails"),
                    optional("elastic", &QuasiStaticSpec::elastic, any, "-", "suspend yielding during the stage")},
         StageChanges::fields());
   }

@@ -12,7 +12,8 @@ struct EquilibriumOptions {
   /// The stage fails if at its end more is out of balance in the kernel's own balance, without the stiffness that modes without any are
   /// given: unbalanced force over the loads [-].
   std::optional<Real> most_unbalanced{};
-  int most_cuts = 10;  ///< of an increment that is not solved, in halves
+  int most_iterations = 50;  ///< of Newton's method in an increment
+  int most_cuts = 10;        ///< of an increment that is not solved, in halves
 };
 
 }  // namespace talus

@@ -211,7 +211,7 @@ Real LoadIncrement<D>::norm(std::span<const Real> f) const
 }
 
 template <int D>
-std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, Real residual)
+std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, const EquilibriumOptions& options)
 {
   std::vector<Real> x(unknowns_.size(), 0), f(x.size());
   if (!find_residual(x, f)) {
@@ -240,7 +240,8 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, Real
                                        .block = D,
                                        .residual = [this](std::span<const Real> at, std::span<Real> to) { return find_residual(at, to); },
                                        .add_preconditioner = [this](const auto& add) { add_stiffness(add); },
-                                       .tolerance = residual};
+                                       .tolerance = options.residual,
+                                       .most_iterations = options.most_iterations};
     result = solver.solve(equations, x);
   }
   if (!result.converged) {

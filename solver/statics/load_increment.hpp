@@ -5,6 +5,7 @@
 
 #include "core/nonlinear_solver.hpp"
 #include "solver/model/model.hpp"
+#include "solver/options/equilibrium_options.hpp"
 #include "solver/statics/elastic_stiffness.hpp"
 #include "solver/statics/gradient_jumps.hpp"
 #include "solver/statics/unknowns.hpp"
@@ -29,7 +30,7 @@ class LoadIncrement {
 
   /// Nothing where it was solved: the model is then at its end, with its balances.  Otherwise why not, and the model as it was.
   /// Collective.
-  std::optional<std::string> solve(NonlinearSolver& solver, Real residual);
+  std::optional<std::string> solve(NonlinearSolver& solver, const EquilibriumOptions& options);
 
  private:
   enum class Then : std::uint8_t { forces, stay };

@@ -22,7 +22,7 @@ std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions&
     LoadIncrement<D> increment(m, dt);
     if (!increment.is_sound())
       return std::nullopt;
-    const std::optional<std::string> why = increment.solve(*m.problem.equations, options.residual);
+    const std::optional<std::string> why = increment.solve(*m.problem.equations, options);
     SolveLedger& solve = m.state.solve;
     if (!why) {
       ++solve.increments;

@@ -6,15 +6,14 @@
 #include <deque>
 
 #include "app/commands/fos/fos_command.hpp"
+#include "app/commands/fos/fos_pictures.hpp"
 #include "app/commands/fos/fos_trials.hpp"
-#include "app/commands/pictures/picture_commands.hpp"
 #include "app/observers/results.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/version.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/output/csv.hpp"
 #include "io/output/fos_json.hpp"
-#include "io/pictures/settings/launch_render.hpp"
 #include "io/system/signals.hpp"
 
 namespace talus {
@@ -60,10 +59,10 @@ class FosSearch {
   std::string table() const
   {
     std::string text =
-        fmt::format("{:>10}  {:<8} {:>9} {:>13} {:>11} {:>9}\n", "factor", "verdict", "growth", "kinetic/peak", "moved [m]", "time [s]");
+        fmt::format("{:>10}  {:<8} {:>9} {:>13} {:>11} {:>9}\n", "factor", "verdict", "growth", second_measure(), "moved [m]", "time [s]");
     for (const FosTrial& trial : trials_) {
       text += fmt::format("{:>10.6g}  {:<8} ", trial.factor, word_of(trial));
-      text += trial.motion ? fmt::format("{:>9.3g} {:>13.2e} {:>11.4g} {:>9.4g}", trial.motion->growth, trial.motion->liveliness,
+      text += trial.motion ? fmt::format("{:>9.3g} {:>13} {:>11.4g} {:>9.4g}", trial.motion->growth, second_of(*trial.motion),
                                          trial.motion->moved, trial.motion->duration)
                            : fmt::format("{:>9} {:>13} {:>11} {:>9}", "-", "-", "-", "-");
       if (trial.by_growth_alone)
@@ -93,7 +92,7 @@ class FosSearch {
                      .trials = {}};
     if (is_narrow())
       record.factor = (*low + *high) / 2;
-    std::string csv = "factor,verdict,moved [m],growth,kinetic_over_peak,duration [s],by_growth_alone,message\n";
+    std::string csv = "factor,verdict,moved [m],growth,kinetic_over_peak,duration [s],by_growth_alone,steadiness,message\n";
     for (const FosTrial& trial : trials_) {
       const Planned& planned = planned_of(trial);
       FosTrialRecord row{.factor = trial.factor,
@@ -102,6 +101,7 @@ class FosSearch {
                          .moved = {},
                          .growth = {},
                          .liveliness = {},
+                         .steadiness = {},
                          .duration = {},
                          .by_growth_alone = trial.by_growth_alone,
                          .folder = planned.run.folder.filename().string(),
@@ -109,11 +109,11 @@ class FosSearch {
                          .scene_digest = planned.run.scene_digest};
       if (trial.motion) {
         row.moved = trial.motion->moved, row.growth = trial.motion->growth;
-        row.liveliness = trial.motion->liveliness, row.duration = trial.motion->duration;
+        row.liveliness = trial.motion->liveliness, row.steadiness = trial.motion->steadiness, row.duration = trial.motion->duration;
       }
       const auto cell = [](const std::optional<Real>& value) { return value ? fmt::format("{}", *value) : std::string(); };
-      csv += fmt::format("{},{},{},{},{},{},{},{}\n", trial.factor, row.verdict, cell(row.moved), cell(row.growth), cell(row.liveliness),
-                         cell(row.duration), trial.by_growth_alone ? 1 : 0, csv_cell(trial.message));
+      csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", trial.factor, row.verdict, cell(row.moved), cell(row.growth), cell(row.liveliness),
+                         cell(row.duration), trial.by_growth_alone ? 1 : 0, cell(row.steadiness), csv_cell(trial.message));
       record.trials.push_back(std::move(row));
     }
     write_whole(plan_.folder / "fos.csv", csv);
@@ -135,6 +135,12 @@ class FosSearch {
   };
 
   static std::string_view word_of(const FosTrial& trial) { return enum_names(Verdict{})[static_cast<std::size_t>(trial.verdict)]; }
+
+  const char* second_measure() const { return plan_.trials == TrialKind::equilibrium ? "steadiness" : "kinetic/peak"; }
+  static std::string second_of(const Motion& motion)
+  {
+    return motion.liveliness ? fmt::format("{:.2e}", *motion.liveliness) : fmt::format("{:.3g}", motion.steadiness.value_or(0));
+  }
 
   void say(const std::string& what) const
   {
@@ -290,7 +296,7 @@ class FosSearch {
       const FosTrial& trial = *std::ranges::find(trials_, one.factor, &FosTrial::factor);
       say(fmt::format(
           "{:.6g}: {} after {:.1f} s{}", one.factor, word_of(trial), ended.seconds,
-          trial.motion ? fmt::format(" (growth {:.3g}, kinetic/peak {:.2e})", trial.motion->growth, trial.motion->liveliness) : ""));
+          trial.motion ? fmt::format(" (growth {:.3g}, {} {})", trial.motion->growth, second_measure(), second_of(*trial.motion)) : ""));
       return;
     }
     if (status.state != CaseState::done || one.times == longest_trial)
@@ -309,47 +315,13 @@ class FosSearch {
   std::vector<Planned> made_;
 };
 
-/// Draws displacement over factor, and the bodies of the lowest factor that fails.
-void draw_fos(const FosPlan& plan, const FosSearch& search)
+std::string criterion_in_words(const FosOptions& options, const FosPlan& plan)
 {
-  const auto [low, high, out_of_order] = search.bracket();
-  std::string table = "factor,displacement [m]\n";
-  const FosTrial* failing = nullptr;
-  for (const FosTrial& trial : search.trials()) {
-    if (trial.motion)
-      table += fmt::format("{},{}\n", trial.factor, trial.motion->moved);
-    if (trial.motion && trial.verdict == Verdict::fails && failing == nullptr)
-      failing = &trial;
-  }
-  const fs::path curve = plan.folder / "fos_curve.csv", chart = plan.folder / "fos.png", picture = plan.folder / "mechanism.png";
-  write_whole(curve, table);
-  launch_render({"chart",
-                 curve.string(),
-                 "--title",
-                 plan.spec.title,
-                 "--x",
-                 "factor",
-                 "--y",
-                 "displacement [m]",
-                 "--curve",
-                 "trials",
-                 "--marks",
-                 "--log",
-                 "--upright",
-                 fmt::format("holds at {:.6g}", *low),
-                 fmt::format("{}", *low),
-                 "--upright",
-                 fmt::format("fails at {:.6g}", *high),
-                 fmt::format("{}", *high),
-                 "--out",
-                 chart.string()});
-  fmt::print("{}\n", chart.string());
-  if (failing == nullptr)
-    return;
-  RenderOptions render;
-  render.folder = plan.folder / fmt::format("trial_{}", failing->factor);
-  render.words = {"--out", picture.string(), "--field", plan.keeps_strain ? "plastic_strain" : "displacement"};
-  render_results(render);
+  if (plan.trials == TrialKind::equilibrium)
+    return fmt::format("{} equilibria each; fails: growth above {} and steadiness above {}, or no equilibrium", plan.duration,
+                       options.criterion.growth, options.criterion.steadiness);
+  return fmt::format("trials of {} s, {}; fails: growth above {} and kinetic energy above {} of its peak", plan.duration,
+                     plan.stage.substr(plan.stage.find("damping")), options.criterion.growth, options.criterion.liveliness);
 }
 
 }  // namespace
@@ -368,9 +340,7 @@ void find_fos(const FosOptions& options)
   fs::create_directories(plan.folder, said_by_the_lock);
   const FolderLock lock(plan.folder);
   if (!options.quiet)
-    fmt::print("{}: strength of {} divided; trials of {} s, damping {}; fails: growth above {} and kinetic energy above {} of its peak\n",
-               plan.scene.string(), fmt::join(plan.bodies, ", "), plan.duration, plan.damping, options.criterion.growth,
-               options.criterion.liveliness);
+    fmt::print("{}: strength of {} divided; {}\n", plan.scene.string(), fmt::join(plan.bodies, ", "), criterion_in_words(options, plan));
   FosSearch search(options, plan);
   search();
   search.write_files();
@@ -384,7 +354,7 @@ void find_fos(const FosOptions& options)
   fmt::print("table in {}\n", (plan.folder / "fos.csv").string());
   if (options.pictures)
     try {
-      draw_fos(plan, search);
+      draw_fos(plan, options.criterion, search.trials(), search.bracket());
     } catch (const Error& e) {
       fmt::print(stderr, "warning: not drawn: {}\n", e.what());
     }

@@ -9,14 +9,19 @@
 
 namespace talus {
 
+/// What a trial is: a run with inertia, or increments each of which is solved for equilibrium.
+enum class TrialKind : std::uint8_t { run, equilibrium };
+
 struct FosOptions {
   std::filesystem::path scene;
   std::vector<std::string> set;
   std::optional<std::filesystem::path> out;
   FosRange range;
   FosCriterion criterion;
-  std::optional<Real> duration;     ///< duration of a trial [s]
-  Real damping = 0.3;               ///< local damping of a trial, as in stages
+  std::optional<TrialKind> trials;  ///< default as the stage that finds the state at rest
+  std::optional<Real> duration;     ///< duration of a run [s]
+  std::optional<Real> damping;      ///< local damping of a run, as in stages; default 0.3
+  std::optional<int> increments;    ///< of a trial that is solved for equilibrium; default 6
   Real mass_share = 0.99;           ///< fraction of mass whose displacement is measured, as in outputs.history.moved
   std::vector<std::string> bodies;  ///< bodies whose strength is divided; empty: all with a strength
   std::optional<int> jobs, threads;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
 
@@ -67,18 +68,26 @@ std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std
     if ((*time)[row] >= time->back() - 0.1 * motion.duration)
       late += (*kinetic)[row], ++rows;
   }
-  if (peak > 0)
+  if (peak > 0) {
     motion.liveliness = late / rows / peak;
+  } else {
+    const auto at = [&](Real share) { return value_at(time->front() + share * motion.duration, *time, largest); };
+    const Real middle = at(2.0 / 3) - at(1.0 / 3), last = motion.moved - at(2.0 / 3);
+    motion.steadiness = middle > 0 ? last / middle : last > 0 ? std::numeric_limits<Real>::infinity() : 0;
+  }
   return motion;
 }
 
 Verdict judge(const Motion& motion, const FosCriterion& criterion) noexcept
 {
+  if (motion.steadiness)
+    return motion.growth <= criterion.growth || *motion.steadiness <= criterion.steadiness ? Verdict::holds : Verdict::fails;
   if (motion.growth <= criterion.growth / clear_margin)
     return Verdict::holds;
   if (motion.growth > criterion.growth * clear_margin)
     return Verdict::fails;
-  const bool grows = !(motion.growth <= criterion.growth), moves = !(motion.liveliness <= criterion.liveliness);
+  const bool grows = !(motion.growth <= criterion.growth);
+  const bool moves = motion.liveliness && !(*motion.liveliness <= criterion.liveliness);
   return grows == moves ? (grows ? Verdict::fails : Verdict::holds) : Verdict::unclear;
 }
 

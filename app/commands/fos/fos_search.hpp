@@ -1,6 +1,7 @@
 #pragma once
 // The search for a factor of safety: the verdict on a trial, and the choice of the next factors.
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,8 +28,11 @@ struct Motion {
   Real moved = 0;  ///< displacement at the end, the largest of the columns [m]
   /// Displacement in the second half of the time over that in the first half, or over half of the settlement if that is larger [-].
   Real growth = 0;
-  Real liveliness = 0;  ///< kinetic energy in the last tenth of the time over its peak [-]
-  Real duration = 0;    ///< duration of the trial [s]
+  /// Kinetic energy in the last tenth of the time over its peak [-]; nothing in equilibria, which have none.
+  std::optional<Real> liveliness;
+  /// Of equilibria under the same loads: displacement in the last third over that in the middle third [-].
+  std::optional<Real> steadiness;
+  Real duration = 0;  ///< duration of the trial [s]
 };
 /// Nothing if the history does not have the columns or has less than two rows.
 std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std::string> moved, const AtRest& bodies);
@@ -38,10 +42,11 @@ constexpr std::array<std::string_view, 3> enum_names(Verdict) { return {"holds",
 
 /// The limits of the measures above which the slope counts as failing.
 struct FosCriterion {
-  Real growth = 0.1, liveliness = 5e-4;
+  Real growth = 0.1, liveliness = 5e-4, steadiness = 0.5;
 };
 /// A growth that is below or above its limit by this factor decides alone: particles may oscillate, and where hardly anything moves the
-/// peak is as small.  In between both measures have to agree; if they contradict each other the verdict is unclear.
+/// peak is as small.  In between both measures have to agree; if they contradict each other the verdict is unclear.  Equilibria fail
+/// if growth and steadiness are above their limits: what comes to rest moves less and less.
 inline constexpr Real clear_margin = 5;
 Verdict judge(const Motion& motion, const FosCriterion& criterion) noexcept;
 

@@ -21,8 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Numbers of rows of a trial's history and of files of its particles.
+/// Numbers of rows of a run's history and of files of its particles.
 constexpr int rows_of_trial = 100, files_of_trial = 10;
+
+/// An increment of a trial that is solved for equilibrium: forces in balance to this share of the loads, in at most so many iterations.
+/// Cutting it in halves would not help, as its loads do not change.
+constexpr Real residual_of_trial = 1e-4;
+constexpr int iterations_of_trial = 20, increments_of_trial = 6;
 
 fs::path default_fos_folder(const fs::path& scene) { return default_results(scene).string() + "_fos"; }
 
@@ -79,6 +84,27 @@ void choose_bodies(const FosOptions& options, Index last, FosPlan& plan)
     problems.push_back({scene.where, "no body has a material with strength that could be divided", ""});
   if (!problems.empty())
     throw SceneErrors(std::move(problems));
+}
+
+/// Selects what a trial is: by default what found the state at rest.
+void choose_trials(const FosOptions& options, const StageSpec& rest, FosPlan& plan)
+{
+  plan.trials = options.trials.value_or(is_solved(rest) ? TrialKind::equilibrium : TrialKind::run);
+  if (plan.trials == TrialKind::equilibrium) {
+    if (options.duration || options.damping)
+      throw Error("--duration and --damping belong to trials that are runs (--trials run); those of static trials are --increments");
+    const int increments = options.increments.value_or(increments_of_trial);
+    plan.duration = increments;
+    plan.stage = fmt::format("type: static, increments: {}, grow: false, residual: {}, iterations: {}, cuts: 0, unbalanced: 1", increments,
+                             residual_of_trial, iterations_of_trial);
+    return;
+  }
+  if (options.increments)
+    throw Error("--increments belongs to trials that are solved for equilibrium (--trials static); that of runs is --duration");
+  if (!(plan.before.gravity > 0) && !options.duration)
+    throw Error("--duration is needed where there is no gravity: how long a trial lasts follows from it");
+  plan.duration = options.duration.value_or(usual_duration(plan.before));
+  plan.stage = fmt::format("type: run, damping: {}", options.damping.value_or(0.3));
 }
 
 /// The properties of particles and materials before the division.
@@ -261,9 +287,11 @@ PlannedRun trial_of(const FosPlan& plan, Real factor, int times_as_long)
   run.changes = plan.of_state;
   const auto add = [&](const std::vector<std::string>& more) { run.changes.insert(run.changes.end(), more.begin(), more.end()); };
   add(divided(plan, factor));
-  add({fmt::format("stages=[{{type: run, duration: {}, damping: {}}}]", duration, plan.damping),
-       fmt::format("outputs={{particles: {{every: {}, fields: {}}}, history: {{every: {}, moved: {}}}{}}}", duration / files_of_trial,
-                   plan.fields, duration / rows_of_trial, plan.moved, plan.picture)});
+  const bool solves = plan.trials == TrialKind::equilibrium;  // each of its steps is an increment, with a row of its own
+  add({fmt::format("stages=[{{duration: {}, {}}}]", duration, plan.stage),
+       fmt::format("outputs={{particles: {{every: {}, fields: {}}}, history: {{every: {}, moved: {}}}{}}}",
+                   solves ? duration : duration / files_of_trial, plan.fields, duration / (solves ? 1e3 * rows_of_trial : rows_of_trial),
+                   plan.moved, plan.picture)});
   run.folder = plan.folder / fmt::format("trial_{}", factor);
   run.scene_digest = digest_of_changed(plan, run.changes);
   return run;
@@ -282,15 +310,12 @@ FosPlan plan_fos(const FosOptions& options)
   if (n_stages == 0) {
     SourceLocation where = scene.where;
     where.path = "stages";
-    throw SceneErrors(where, "there is no stage of type geostatic: strength is divided in the state at rest that such a stage finds");
+    throw SceneErrors(where, "there is no stage of type geostatic or static: strength is divided in the state at rest that it finds");
   }
   const auto last = static_cast<Index>(n_stages) - 1;
   choose_bodies(options, last, plan);
   plan.before = scene.dimension == 2 ? measured<2>(plan) : measured<3>(plan);
-  if (!(plan.before.gravity > 0) && !options.duration)
-    throw Error("--duration is needed where there is no gravity: how long a trial lasts follows from it");
-  plan.duration = options.duration.value_or(usual_duration(plan.before));
-  plan.damping = options.damping;
+  choose_trials(options, scene.stages[n_stages - 1], plan);
 
   plan.at_rest.changes = options.set;
   plan.of_state = options.set;

@@ -20,7 +20,9 @@ struct FosPlan {
   std::vector<std::string> columns;    ///< columns of the history with the displacement of the bodies
   bool keeps_strain = false;           ///< whether laws of these bodies store plastic strain
   AtRest before;
-  Real duration = 0, damping = 0;  ///< of a trial
+  TrialKind trials = TrialKind::run;
+  Real duration = 0;  ///< of a trial [s], in equilibria one for each increment
+  std::string stage;  ///< of a trial, without its duration
 };
 
 /// Makes the mesh and the model of the scene.  Throws SceneErrors with all errors of the scene, and with reasons why its strength cannot be

@@ -36,7 +36,8 @@ TEST(FosSearch, MotionIsWhatIsAddedInTheSecondHalfAndWhatIsStillAlive)
   const auto slides = motion_of(history_of([](Real t) { return 0.5 * t; }, [](Real t) { return 10 * t; }), columns, bank);
   ASSERT_TRUE(slides);
   EXPECT_NEAR(slides->growth, 1, 1e-12);
-  EXPECT_NEAR(slides->liveliness, 0.95, 1e-12);  // mean from 3.6 to 4 s over the peak at 4 s
+  ASSERT_TRUE(slides->liveliness);
+  EXPECT_NEAR(*slides->liveliness, 0.95, 1e-12);  // mean from 3.6 to 4 s over the peak at 4 s
   EXPECT_NEAR(slides->moved, 2, 1e-12);
   EXPECT_NEAR(slides->duration, 4, 1e-12);
   EXPECT_EQ(judge(*slides, {}), Verdict::fails);
@@ -52,7 +53,7 @@ TEST(FosSearch, WhatIsSmallBesideTheSettlementIsNoGrowth)
 {
   const auto trembles = motion_of(history_of([](Real t) { return 1e-5 * t; }, [](Real) { return 1e-6; }), columns, bank);
   EXPECT_NEAR(trembles->growth, 2e-5 / 0.05, 1e-12);
-  EXPECT_NEAR(trembles->liveliness, 1, 1e-12);
+  EXPECT_NEAR(trembles->liveliness.value_or(0), 1, 1e-12);
   EXPECT_EQ(judge(*trembles, {}), Verdict::holds);
 }
 
@@ -64,6 +65,23 @@ TEST(FosSearch, MeasuresThatContradictEachOtherAreUnclear)
   EXPECT_EQ(judge({.growth = 0.51, .liveliness = 1e-5}, {}), Verdict::fails);
   EXPECT_EQ(judge({.growth = std::nan(""), .liveliness = 1}, {}), Verdict::fails);
   EXPECT_FALSE(motion_of(history_of([](Real t) { return t; }, [](Real t) { return t; }), std::vector<std::string>{"crest"}, bank));
+}
+
+TEST(FosSearch, EquilibriaFailWhereTheyMoveOnSteadily)
+{
+  const auto none = [](Real) { return 0.0; };
+  const auto slides = motion_of(history_of([](Real t) { return 0.5 * t; }, none), columns, bank);
+  ASSERT_TRUE(slides);
+  EXPECT_FALSE(slides->liveliness);
+  ASSERT_TRUE(slides->steadiness);
+  EXPECT_NEAR(*slides->steadiness, 1, 1e-9);
+  EXPECT_EQ(judge(*slides, {}), Verdict::fails);
+  const auto settles = motion_of(history_of([](Real t) { return 1 - std::exp(-t / 1.5); }, none), columns, bank);
+  EXPECT_GT(settles->growth, 0.1);
+  EXPECT_NEAR(settles->steadiness.value_or(0), std::exp(-4 / 3.0 / 1.5), 1e-3);
+  EXPECT_EQ(judge(*settles, {}), Verdict::holds) << "moves less and less";
+  const auto rests = motion_of(history_of(none, none), columns, bank);
+  EXPECT_EQ(judge(*rests, {}), Verdict::holds);
 }
 
 TEST(FosSearch, DurationFollowsFromHeightAndWaves)
@@ -164,7 +182,8 @@ TEST_F(FosProgram, FindsWhereABankFailsAndGoesOnWithWhatIsThere)
   ASSERT_EQ(finer.code, 0) << finer.err;
   EXPECT_THAT(finer.out, AllOf(HasSubstr("at rest: done before"), HasSubstr("trials judged before"), Not(HasSubstr("1: begins"))));
   const std::string csv = read("out/fos.csv");
-  EXPECT_THAT(csv, testing::StartsWith("factor,verdict,moved [m],growth,kinetic_over_peak,duration [s],by_growth_alone,message\n1,holds,"));
+  EXPECT_THAT(csv, testing::StartsWith(
+                       "factor,verdict,moved [m],growth,kinetic_over_peak,duration [s],by_growth_alone,steadiness,message\n1,holds,"));
   EXPECT_THAT(csv, HasSubstr("\n4,fails,"));
   const auto number = [&](const std::string& key) {
     const std::string json = read("out/fos.json");
@@ -186,12 +205,28 @@ TEST_F(FosProgram, FindsWhereABankFailsAndGoesOnWithWhatIsThere)
   EXPECT_EQ(read("alone/history.csv"), read("out/trial_1/history.csv")) << "anybody can repeat a trial";
 }
 
+/// Each increment of a static trial has the same loads: a bank that stands moves in the first one only, one that fails in each.
+TEST_F(FosProgram, StaticTrialsFindTheFactorThatRunsFind)
+{
+  write("bank.yaml", bank_scene("stages: [{type: static, increments: 2, initial_stress: {k0: 0.7}}, {type: run, duration: 60}]\n"));
+  const Outcome outcome = fos("--from 1.75 --to 2.25 --width 0.25 --jobs 2");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("6 equilibria each; fails: growth above 0.1 and steadiness above 0.5, or no equilibrium"));
+  const std::string json = read("out/fos.json"), key = "\"factor_of_safety\": ";
+  EXPECT_NEAR(std::stod(json.substr(json.find(key) + key.size())), 3.83 * 1e4 / (2000 * 9.81), 0.25);  // runs find 1.875
+  EXPECT_THAT(read("out/trial_1.75/summary.json"), HasSubstr("type: static, increments: 6"));
+  EXPECT_EQ(fos("--duration 2").code, 2);
+  EXPECT_EQ(fos("--trials damped").code, 2);
+  write("bank.yaml", bank_scene(at_rest));
+  EXPECT_THAT(fos("--increments 4").err, HasSubstr("--increments belongs to trials that are solved for equilibrium"));
+}
+
 TEST_F(FosProgram, SaysWhatKeepsStrengthFromBeingDivided)
 {
   write("bank.yaml", bank_scene("time: {end: 1}\n"));
   const Outcome no_rest = fos("");
   EXPECT_EQ(no_rest.code, 2);
-  EXPECT_THAT(no_rest.err, HasSubstr("stages: there is no stage of type geostatic"));
+  EXPECT_THAT(no_rest.err, HasSubstr("stages: there is no stage of type geostatic or static"));
   write("bank.yaml", bank_scene(at_rest, "neo_hookean"));
   const Outcome rubber = fos("");
   EXPECT_EQ(rubber.code, 2);
@@ -231,7 +266,7 @@ TEST_F(FosProgram, ATrialThatBreaksOffHasFailed)
   const Outcome outcome = fos("--from 1 --to 8 --width 7 --jobs 2");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("the run broke off: "));
-  EXPECT_THAT(read("out/fos.csv"), HasSubstr("\n8,fails,,,,,0,"));
+  EXPECT_THAT(read("out/fos.csv"), HasSubstr("\n8,fails,,,,,0,,"));
   const Outcome again = fos("--from 1 --to 8 --width 7 --jobs 2");
   EXPECT_THAT(again.out, AllOf(HasSubstr("2 trials judged before"), Not(HasSubstr("begins"))));
 }
