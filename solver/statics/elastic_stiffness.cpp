@@ -42,7 +42,7 @@ auto ElasticStiffness<D>::of_nodes(const Problem<D>& problem, const Unknowns<D>&
   std::vector<OfNode> all;
   for (const Index n : unknowns.node) {
     const Real stiffness = std::max(diagonal[to_size(n)], least_stiffness * largest);
-    all.push_back({stiffness, stiffness - diagonal[to_size(n)]});
+    all.push_back({stiffness, diagonal[to_size(n)] > 0 ? 0 : stiffness});
   }
   return all;
 }

@@ -33,8 +33,16 @@ class GradientJumps {
       for (const Index n : mesh.cell(c))
         volume += volume_[to_size(n)], shear += modulus[to_size(n)];
       if (volume > 0)
-        cells_.push_back({c, (filled[to_size(c)] > 0 ? 1 : 0.1) * mesh.volume(c) * shear / volume / (D + 1)});
+        cells_.push_back({c, share_of(c) * mesh.volume(c) * shear / volume / (D + 1)});
     }
+  }
+
+  /// Calls f(cell, volume times shear modulus [N m]) for the cells that have this stiffness, empty ones as if they were filled.
+  template <class F>
+  void for_each_cell(F&& f) const
+  {
+    for (const Cell& one : cells_)
+      f(one.cell, (D + 1) * one.stiffness / share_of(one.cell));
   }
 
   /// Adds -dW/du [N] to the forces of the nodes.
@@ -70,6 +78,8 @@ class GradientJumps {
   }
 
  private:
+  Real share_of(Index c) const noexcept { return filled_[to_size(c)] > 0 ? 1 : 0.1; }
+
   struct Cell {
     Index cell;
     Real stiffness;  ///< volume times shear modulus, of each node [N m]
