@@ -54,7 +54,7 @@ def _parser() -> argparse.ArgumentParser:
     one.add_argument("specification", type=Path, help="file (.yaml) that names scene, parameters and observations")
     one.add_argument("--out", type=Path, metavar="DIR", help="folder of runs and results; default runs/<name of the file>")
     one.add_argument("--jobs", type=_count, default=1, metavar="N", help="runs at a time; default 1")
-    one.add_argument("--threads", type=_count, metavar="N", help="threads of each; default the cores over the runs at a time")
+    one.add_argument("--threads", type=_count, metavar="N", help="threads of each; default as for a run, with --jobs the cores over that")
     one.add_argument("--no-pictures", dest="pictures", action="store_false", help="draw nothing")
     one.add_argument("--quiet", action="store_true", help="only the results")
     one.add_argument("--program", type=Path, metavar="PATH", help="the program talus; default as in talus.find_program")

@@ -40,7 +40,7 @@ def calibrate(specification: str | os.PathLike[str], *, out: str | os.PathLike[s
     specification  path of the file (.yaml) that names scene, parameters and observations (docs/guide/calibration.md)
     out            folder for runs and results; default `default_folder`.  Runs that are done there are not repeated
     jobs           runs at a time
-    threads        of each run; default the cores over the runs at a time
+    threads        of each run; default what the program takes, with several runs at a time the cores over these
     tell           is called with a line of text for each run
     pictures       whether calibration.png is drawn, which needs matplotlib
     program        the program talus; default: `find_program`
@@ -54,7 +54,8 @@ def calibrate(specification: str | os.PathLike[str], *, out: str | os.PathLike[s
     folder = Path(out) if out is not None else default_folder(Path(specification))
     folder.mkdir(parents=True, exist_ok=True)
     with only_writer(folder):
-        evaluation = Evaluation(spec, folder, jobs, threads or max((os.cpu_count() or 1) // jobs, 1), found_program, tell or (lambda _: None))
+        of_each = threads if threads is not None or jobs == 1 else max((os.cpu_count() or 1) // jobs, 1)
+        evaluation = Evaluation(spec, folder, jobs, of_each, found_program, tell or (lambda _: None))
         try:
             result = (_by_ensemble if spec.search.method == "ensemble" else _by_gauss_newton)(spec, evaluation)
         except NoResiduals as error:

@@ -146,10 +146,12 @@ def sampled(raster: Raster, places: np.ndarray) -> np.ndarray:
 
 def read_observation(entry: Entry) -> Observation | None:
     """Reads an entry of the list `observations` with its file.  None, and errors at their places, if something is wrong."""
+    before = len(entry.problems.messages)
     block = Block(entry)
     kind = block.word("type", TYPES)
+    if len(entry.problems.messages) > before:
+        return None  # its other keys mean nothing without a type
     name = block.text("name", kind)
-    before = len(entry.problems.messages)
     reader = {"history": _read_history, "front": _read_front, "profile": _read_profile, "thickness": _read_thickness,
               "outline": _read_outline}[kind]
     try:
