@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""How often does the stated uncertainty of a calibration contain the truth?  Calibrates scenes/deposit with observations of hidden values, each
-time with other errors of measurement, and counts.
+"""How often does the stated uncertainty of a calibration contain the truth?  Calibrates scenes/deposit with observations of hidden values,
+each time with other errors of measurement, and counts.
 
 Usage: calibration_coverage.py [--out DIR] [--count N] [--method gauss_newton|ensemble] [--near]
 
-Prints the estimates over the hidden values, and the number of intervals that contain these.  Takes a minute or two for each of N, with --near,
-which begins at values 5 % above the hidden ones, half of that.
+Prints the estimates over the hidden values, and the number of intervals that contain these.  Takes a minute for each of N.
+--near begins at values 5 % above the hidden ones.
 """
 import argparse
 import re
@@ -47,8 +47,8 @@ def main():
               f"{result.contents['degrees_of_freedom']}, {result.contents['runs']['count']} runs, {result.contents['ending']}", flush=True)
     scaled, inside = np.array(scaled), np.array(inside)
     for k, key in enumerate(HIDDEN):
-        print(f"{key}: {inside[:, k].sum()} of {len(inside)} intervals contain {HIDDEN[key]:g}; distance over deviation {scaled[:, k].mean():.2f} "
-              f"in the mean, standard deviation {scaled[:, k].std(ddof=1):.2f}")
+        print(f"{key}: {inside[:, k].sum()} of {len(inside)} intervals contain {HIDDEN[key]:g}; distance over deviation "
+              f"{scaled[:, k].mean():.2f} in the mean, standard deviation {scaled[:, k].std(ddof=1):.2f}")
 
 
 if __name__ == "__main__":

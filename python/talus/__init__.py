@@ -43,7 +43,8 @@ from .tables import PURE, Table
 
 __version__ = "0.1.0"  # that of the program (CMakeLists.txt)
 
-__all__ = ["Body", "CHECKPOINT_FORMATS", "Calibration", "Checkpoint", "Comparison", "Damaged", "Difference", "EnvironmentFailure", "Estimate", "FileError", "Maps",
-           "MaterialTest", "Mesh", "Message", "Missing", "MissingPackage", "PURE", "Particles", "Progress", "ProgramError", "Raster", "Run",
-           "RunFailed", "SceneError", "Series", "Sweep", "TESTS", "Table", "UnknownFormat", "calibrate", "check", "compare", "drive", "find_program",
-           "manual", "open", "resume", "run", "schema", "tensors", "to_pandas", "to_yaml", "von_mises"]
+__all__ = ["Body", "CHECKPOINT_FORMATS", "Calibration", "Checkpoint", "Comparison", "Damaged", "Difference", "EnvironmentFailure",
+           "Estimate", "FileError", "Maps", "MaterialTest", "Mesh", "Message", "Missing", "MissingPackage", "PURE", "Particles", "Progress",
+           "ProgramError", "Raster", "Run", "RunFailed", "SceneError", "Series", "Sweep", "TESTS", "Table", "UnknownFormat", "calibrate",
+           "check", "compare", "drive", "find_program", "manual", "open", "resume", "run", "schema", "tensors", "to_pandas", "to_yaml",
+           "von_mises"]

@@ -36,8 +36,9 @@ def main(words: Sequence[str] | None = None) -> int:
     except ProgramError as error:  # killed by a signal, for example
         return _complain(_FAILED, str(error))
     except FileNotFoundError as error:
-        at_specification = error.filename is not None and Path(error.filename) == options.specification
-        return _complain(_WRONG if at_specification else _ENVIRONMENT, f"there is no file {options.specification}" if at_specification else str(error))
+        if error.filename is not None and Path(error.filename) == options.specification:
+            return _complain(_WRONG, f"there is no file {options.specification}")
+        return _complain(_ENVIRONMENT, str(error))
     except (OSError, MissingPackage, FileError) as error:
         return _complain(_ENVIRONMENT, str(error))
     print(result)
@@ -49,8 +50,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser("talus", description="Commands of the Python package talus")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     one = commands.add_parser("calibrate", help="find parameters of a scene from observations, with their uncertainty",
-                              description="Finds parameters of a scene from observations, with their uncertainty.  Runs that are done in the "
-                                          "folder are not repeated: the same command goes on.")
+                              description="Finds parameters of a scene from observations, with their uncertainty.  Runs that are done in "
+                                          "the folder are not repeated: the same command goes on.")
     one.add_argument("specification", type=Path, help="file (.yaml) that names scene, parameters and observations")
     one.add_argument("--out", type=Path, metavar="DIR", help="folder of runs and results; default runs/<name of the file>")
     one.add_argument("--jobs", type=_count, default=1, metavar="N", help="runs at a time; default 1")

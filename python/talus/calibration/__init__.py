@@ -32,8 +32,8 @@ def default_folder(specification: Path) -> Path:
     return Path("runs") / (f"{folder}_calibration" if specification.name == "calibration.yaml" and folder else specification.stem)
 
 
-def calibrate(specification: str | os.PathLike[str], *, out: str | os.PathLike[str] | None = None, jobs: int = 1, threads: int | None = None,
-              tell: Callable[[str], object] | None = None, pictures: bool = True,
+def calibrate(specification: str | os.PathLike[str], *, out: str | os.PathLike[str] | None = None, jobs: int = 1,
+              threads: int | None = None, tell: Callable[[str], object] | None = None, pictures: bool = True,
               program: str | os.PathLike[str] | None = None) -> Calibration:
     """Finds parameters of a scene from observations, with their uncertainty.
 
@@ -45,8 +45,8 @@ def calibrate(specification: str | os.PathLike[str], *, out: str | os.PathLike[s
     pictures       whether calibration.png is drawn, which needs matplotlib
     program        the program talus; default: `find_program`
 
-    Needs scipy and PyYAML, for outlines contourpy.  Raises SceneError for wrong input, with the place of each error; RunFailed if the run at
-    the start fails, or so many others that there is no estimate; and as `run` does.  Ctrl-C lets the runs write their checkpoints.
+    Needs scipy and PyYAML, for outlines contourpy.  Raises SceneError for wrong input, with the place of each error; RunFailed if the run
+    at the start fails, or so many others that there is no estimate; and as `run` does.  Ctrl-C lets the runs write their checkpoints.
     """
     spec = read_specification(Path(specification))
     found_program = find_program(program)
@@ -59,7 +59,8 @@ def calibrate(specification: str | os.PathLike[str], *, out: str | os.PathLike[s
         try:
             result = (_by_ensemble if spec.search.method == "ensemble" else _by_gauss_newton)(spec, evaluation)
         except NoResiduals as error:
-            failed = [f"run {record.number} ({record.folder}): {record.error}" for record in evaluation.records if record.status == "failed"]
+            failed = [f"run {record.number} ({record.folder}): {record.error}" for record in evaluation.records
+                      if record.status == "failed"]
             raise RunFailed("\n".join([f"no estimate: {error}", *failed]), 1) from error
         if pictures:
             from .figure import write_figure
@@ -99,8 +100,9 @@ def _by_gauss_newton(spec: Specification, evaluation: Evaluation) -> Calibration
         found.warnings.append("the covariance is that of a Jacobian further away than a standard deviation: allow more runs (most_runs)")
     found.warnings += [f"{name}: residuals bend or scatter over its step as much as they change; try another `step`"
                        for name, curvature in zip(names, fit.curvature) if is_dominated(curvature)]
-    return write_results(spec, evaluation, fit.position, found, fit.ending, {
-        "chi2_of_steps": fit.iterations, "second_over_first_difference": [float(value) if np.isfinite(value) else None for value in fit.curvature]})
+    curvature = [float(value) if np.isfinite(value) else None for value in fit.curvature]
+    return write_results(spec, evaluation, fit.position, found, fit.ending,
+                         {"chi2_of_steps": fit.iterations, "second_over_first_difference": curvature})
 
 
 def _by_ensemble(spec: Specification, evaluation: Evaluation) -> Calibration:

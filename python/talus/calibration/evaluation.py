@@ -76,8 +76,8 @@ class Evaluation:
         self._stop = threading.Event()
 
     def __call__(self, positions: Sequence[np.ndarray], purpose: str) -> list[np.ndarray | None]:
-        """Residuals over their standard deviations at positions between the bounds, (n,) each; those of priors are the last ones.  None where
-        a run failed.  Raises SceneError where no run can be compared with an observation."""
+        """Residuals over their standard deviations at positions between the bounds, (n,) each; those of priors are the last ones.  None
+        where a run failed.  Raises SceneError where no run can be compared with an observation."""
         records = [self._record(self.spec.values(position), purpose) for position in positions]
         waiting = list(dict.fromkeys(record.folder for record in records if record.status == "to be run"))
         with ThreadPoolExecutor(self.jobs) as pool:

@@ -40,8 +40,8 @@ def write_figure(result: Calibration, observations: list[Observation], start: Re
             below.set_ylim(-limit, limit)
     panels[1, 0].set_ylabel("residual over standard deviation")
     panels[0, 0].legend(frameon=False, fontsize="small")
-    figure.suptitle(",  ".join(f"{estimate.key} = {estimate.value:.4g} ± {estimate.deviation:.2g}" for estimate in result.estimates.values()),
-                    fontsize="medium")
+    estimates = [f"{one.key} = {one.value:.4g} ± {one.deviation:.2g}" for one in result.estimates.values()]
+    figure.suptitle(",  ".join(estimates), fontsize="medium")
     path = result.folder / "calibration.png"
     save_figure(figure, path)
     return path

@@ -38,8 +38,8 @@ def save_figure(figure: Any, path: Path) -> None:
 
 @contextlib.contextmanager
 def only_writer(folder: Path) -> Iterator[None]:
-    """Keeps other processes from the folder during the block, where the file system supports locks.  Raises EnvironmentFailure if another one
-    is at work there."""
+    """Keeps other processes from the folder during the block, where the file system supports locks.  Raises EnvironmentFailure if another
+    one is at work there."""
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         try:

@@ -162,8 +162,8 @@ def minimise(evaluate: Evaluate, start: np.ndarray, steps: np.ndarray, *, most: 
 
 
 def _step(search: _Search, damping: float) -> tuple[np.ndarray, float]:
-    """The damped step within the bounds, and by how much it reduces chi squared if the residuals are linear.  All parameters are damped alike,
-    as positions between bounds have one scale (Levenberg); Marquardt's damping by the columns would let weak parameters run away."""
+    """The damped step within the bounds, and by how much it reduces chi squared if the residuals are linear.  All parameters are damped
+    alike, as positions between bounds have one scale (Levenberg); damping by the columns (Marquardt) would let weak ones run away."""
     optimize = need("scipy.optimize", "solves least squares with bounds")
     n = len(search.x)
     longest = max(float(np.linalg.norm(search.jacobian, axis=0).max()), np.finfo(float).tiny)

@@ -89,7 +89,7 @@ def resampled(lines: Sequence[np.ndarray], spacing: float | None) -> np.ndarray:
 
 def contour_lines(raster: Raster, level: float) -> list[np.ndarray]:
     """Lines along which a map has a value, each (points, 2) [m]: linear between the centres of the cells, with zero where the map has no
-    value.  A deposit that reaches the edge of the map is open there: outlines have points on the ground that it covers, not on that edge."""
+    value.  A deposit that reaches the edge of the map is open there: an observed outline should have no points on that edge."""
     contour = need("contourpy", "finds outlines in maps")
     x, y = np.asarray(raster.x, float), np.asarray(raster.y, float)[::-1]
     values = np.nan_to_num(raster.values.astype(float))[::-1]

@@ -133,7 +133,7 @@ def _plain(value: Any) -> Any:
 
 def _at_bounds(parameters: list[Parameter], position: np.ndarray) -> list[str]:
     near = 1e-6
-    return [f"{parameter.key} is at its bound {parameter.value(round(float(x))):g}: its interval does not count; were the bounds too narrow?"
+    return [f"{parameter.key} is at its bound {parameter.value(round(float(x))):g}: its interval does not count; are the bounds too narrow?"
             for parameter, x in zip(parameters, position) if x < near or x > 1 - near]
 
 

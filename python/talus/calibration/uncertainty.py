@@ -61,7 +61,8 @@ def interval(position: float, deviation: float) -> tuple[float, float]:
     return max(position - half, 0.0), min(position + half, 1.0)
 
 
-def of_jacobian(jacobian: np.ndarray, residuals: np.ndarray, names: Sequence[str], priors: int = 0, *, is_scaled: bool = False) -> Uncertainty:
+def of_jacobian(jacobian: np.ndarray, residuals: np.ndarray, names: Sequence[str], priors: int = 0, *,
+                is_scaled: bool = False) -> Uncertainty:
     """The uncertainty of a minimum: the covariance is (J^T J)^-1, with residuals over their standard deviations (so J^T W J of the plain
     ones, with the weights W).  Source: Seber & Wild (1989), Nonlinear Regression, section 2.1.
 
@@ -91,13 +92,16 @@ def of_jacobian(jacobian: np.ndarray, residuals: np.ndarray, names: Sequence[str
         if size * _LARGE_CONDITION >= s[0]:
             break
         parts = [name for name, part in zip(names, direction) if abs(part) > _PART_OF_DIRECTION]
-        told = f"only combinations of {' and '.join(parts)} are determined" if len(parts) > 1 else f"the observations hardly depend on {parts[0]}"
-        found.warnings.append(f"the condition number is {condition:.3g}, more than {_LARGE_CONDITION:g}: {told}; other observations, a prior "
-                              "or fewer parameters help")
+        told = f"the observations hardly depend on {parts[0]}"
+        if len(parts) > 1:
+            told = f"only combinations of {' and '.join(parts)} are determined"
+        found.warnings.append(f"the condition number is {condition:.3g}, more than {_LARGE_CONDITION:g}: {told}; "
+                              "other observations, a prior or fewer parameters help")
     return Uncertainty(found.covariance, condition, chi2, freedom, found.warnings + _warnings_of_correlation(found, names))
 
 
-def of_ensemble(positions: np.ndarray, prior: np.ndarray, residuals: np.ndarray, names: Sequence[str], *, is_scaled: bool = False) -> Uncertainty:
+def of_ensemble(positions: np.ndarray, prior: np.ndarray, residuals: np.ndarray, names: Sequence[str], *,
+                is_scaled: bool = False) -> Uncertainty:
     """The uncertainty of the mean of an ensemble: the covariance of its members.
 
     positions  (members, n), after the last assimilation
@@ -111,8 +115,8 @@ def of_ensemble(positions: np.ndarray, prior: np.ndarray, residuals: np.ndarray,
     found.warnings += _warnings_of_misfit(found, is_scaled)
     for name, now, before in zip(names, found.deviations, prior.std(axis=0, ddof=1)):
         if now > 0.8 * before:
-            found.warnings.append(f"{name} is not identifiable: the ensemble has {now / before:.2g} of the width that it had before the first "
-                                  "assimilation")
+            found.warnings.append(f"{name} is not identifiable: the ensemble has {now / before:.2g} of the width that it had before the "
+                                  "first assimilation")
     found.warnings += _warnings_of_correlation(found, names)
     return found
 
@@ -120,7 +124,7 @@ def of_ensemble(positions: np.ndarray, prior: np.ndarray, residuals: np.ndarray,
 def _warnings_of_misfit(found: Uncertainty, is_scaled: bool) -> list[str]:
     """A warning where residuals are so large that the stated deviations cannot be right."""
     if found.freedom <= 0:
-        return [f"{max(found.freedom, 0)} degrees of freedom: the misfit cannot be judged, as there are not more observations than parameters"]
+        return ["there are not more observations than parameters: the misfit cannot be judged"]
     if need("scipy.stats", "judges misfits").chi2.sf(found.chi2, found.freedom) > _UNLIKELY:
         return []
     then = "the intervals are wider by this factor" if is_scaled else "the intervals are too narrow; `uncertainty: scaled` widens them"
