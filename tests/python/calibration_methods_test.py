@@ -66,6 +66,7 @@ class GaussNewton(unittest.TestCase):
             fit = minimise(calls, np.array([0.9, 0.1]), self.steps, most=most, tolerance=1e-12)
             self.assertLessEqual(len(calls.purposes), most)
             self.assertEqual(fit.ending, USED_UP)
+            self.assertGreater(fit.promised, 1e-12)
 
     def test_a_minimum_outside_is_found_at_the_bound(self):
         fit = minimise(Calls(lambda x: linear(x + [0.5, 0.0])), self.start, self.steps, most=40, tolerance=1e-6)

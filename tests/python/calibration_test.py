@@ -138,8 +138,8 @@ class OfABlock(InAFolder):
     def observe(self, values):
         self.write("height.csv", "time [s],middle_uy [m]\n" + "".join(f"{t:.3f},{u!r}\n" for t, u in zip(TIMES, values.tolist())))
 
-    def add_parameter(self, line):
-        self.write("calibration.yaml", CALIBRATION.replace("observations:", f"  {line}\nobservations:"))
+    def add_parameter(self, line, end=""):
+        self.write("calibration.yaml", CALIBRATION.replace("observations:", f"  {line}\nobservations:") + end)
 
     def calibrate(self, **options):
         return talus.calibrate("calibration.yaml", **{"out": "out", "threads": 1, "pictures": False, **options})
@@ -169,6 +169,7 @@ class Calibrations(OfABlock):
         self.assertEqual([path.name for path in Path("out").iterdir() if path.name.startswith(".")], [])
 
     def test_runs_that_are_done_are_not_repeated_and_others_are(self):
+        self.write("calibration.yaml", CALIBRATION + "gauss_newton: {most_runs: 9}\n")
         first = self.calibrate(jobs=2)
         with mock.patch.object(evaluation, "run", side_effect=AssertionError("a run was repeated")):
             again = self.calibrate()
@@ -177,11 +178,13 @@ class Calibrations(OfABlock):
         self.observe(height(-9.81, 1.1))  # other observations: the first runs serve again
         other = self.calibrate()
         self.assertGreaterEqual(other.contents["runs"]["reused"], 5)
-        self.assertAlmostEqual(other.values["bodies[0].velocity[1]"], 1.1, delta=0.01)
+        self.assertAlmostEqual(other.values["bodies[0].velocity[1]"], 1.1, delta=0.02)
         self.write("scene.yaml", SCENE.replace("1000", "1001"))
         self.assertEqual(self.calibrate().contents["runs"]["reused"], 0)
 
     def test_a_calibration_that_was_stopped_goes_on(self):
+        self.write("calibration.yaml", CALIBRATION + "gauss_newton: {most_runs: 9}\n")
+
         def stop(line):
             if line.startswith("run 4"):
                 raise KeyboardInterrupt
@@ -208,7 +211,7 @@ class Calibrations(OfABlock):
         self.assertAlmostEqual(density.deviation, 50, delta=0.5)
 
     def test_a_parameter_that_is_not_determined_has_no_number(self):
-        self.add_parameter("watch.speed: {start: 100, low: 50, high: 200}")
+        self.add_parameter("watch.speed: {start: 100, low: 50, high: 200}", "gauss_newton: {differences: forward}\n")
         result = self.calibrate()
         self.assertIn("watch.speed is not identifiable", "\n".join(result.warnings))
         self.assertIn("not determined", str(result))

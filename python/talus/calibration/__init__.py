@@ -95,7 +95,8 @@ def _by_gauss_newton(spec: Specification, evaluation: Evaluation) -> Calibration
     priors = sum(parameter.prior is not None for parameter in spec.parameters)
     found = of_jacobian(fit.jacobian, fit.residuals, names, priors, is_scaled=search.is_scaled)
     if fit.ending != CONVERGED:
-        found.warnings.insert(0, f"the minimum is not certain: {fit.ending}")
+        found.warnings.insert(0, f"the minimum is not certain: {fit.ending}; one more step would reduce chi squared by about "
+                                 f"{fit.promised:.2g} (by 1 is a step of one standard deviation)")
     if np.any(np.abs(fit.position - fit.at) > found.deviations):
         found.warnings.append("the covariance is that of a Jacobian further away than a standard deviation: allow more runs (most_runs)")
     found.warnings += [f"{name}: residuals bend or scatter over its step as much as they change; try another `step`"

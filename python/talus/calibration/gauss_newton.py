@@ -42,6 +42,7 @@ class Fit:
     jacobian     (m, n), derivatives of the residuals by the position
     at           (n,), where the Jacobian was computed by differences; Broyden's updates follow if that is not `position`
     ending       CONVERGED, USED_UP or NO_DECREASE: why the search ended
+    promised     by how much one more step would reduce chi squared, if the residuals were linear
     evaluations  their number
     iterations   chi squared after each accepted step
     curvature    (n,), for each parameter the second difference of the residuals over the first, as lengths: where it is 1 or more, the
@@ -53,6 +54,7 @@ class Fit:
     jacobian: np.ndarray
     at: np.ndarray
     ending: str
+    promised: float
     evaluations: int
     iterations: list[float] = field(default_factory=list)
     curvature: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -134,7 +136,8 @@ def minimise(evaluate: Evaluate, start: np.ndarray, steps: np.ndarray, *, most: 
     damping, growth, rejected, is_trusted, history = _FIRST_DAMPING, 2.0, 0, True, [search.chi2]
     while True:
         left = most - search.count
-        is_small = _step(search, _LEAST_DAMPING)[1] < tolerance
+        promised = _step(search, _LEAST_DAMPING)[1]
+        is_small = promised < tolerance
         if is_small and (search.is_fresh or left < search.for_jacobian):
             ending = CONVERGED
             break
@@ -158,7 +161,7 @@ def minimise(evaluate: Evaluate, start: np.ndarray, steps: np.ndarray, *, most: 
         else:
             rejected += 1
             damping, growth = damping * growth, 2 * growth
-    return Fit(search.x, search.r, search.jacobian, search.at, ending, search.count, history, search.curvature)
+    return Fit(search.x, search.r, search.jacobian, search.at, ending, promised, search.count, history, search.curvature)
 
 
 def _step(search: _Search, damping: float) -> tuple[np.ndarray, float]:
