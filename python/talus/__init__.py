@@ -15,10 +15,10 @@
     talus.drive({"law": "von_mises", ...}, test="uniaxial_strain_rate")
 
 The package is one folder that can be copied.  It needs numpy, h5py to read checkpoints, and lz4 to read particles and meshes
-(Debian: python3-numpy, python3-h5py, python3-lz4); pandas, xarray, matplotlib and PyVista are used where they are installed, and
-MissingPackage names them where they are not.  Units are SI; a pure number has the unit "-".  Symmetric tensors have six components,
+(Debian: python3-numpy, python3-h5py, python3-lz4); pandas, xarray, matplotlib, PyVista, and for calibrations scipy, PyYAML and contourpy,
+are used where they are installed, and MissingPackage names them where they are not.  Units are SI; a pure number has the unit "-".  Symmetric tensors have six components,
 xx, yy, zz, xy, yz, xz (`tensors` makes matrices of them), others nine, by rows.  Vectors of particle and mesh files have three components
-in two dimensions too.  Only `run`, `resume` and `drive` write files, all by the program.
+in two dimensions too.  Only `run`, `resume`, `drive` and `calibrate` write files.
 
 Errors in a file are FileErrors with its name: `Damaged`, or `UnknownFormat` for a file of another version.  A missing file is a
 FileNotFoundError; a missing field, column or body is a `Missing` error, which lists the existing ones.  An error of the program is a

@@ -251,10 +251,10 @@ parameters:
   loads[0].acceleration[1]: {start: six, low: -15, high: -2, scale: log}
 observations:
   - {type: history, column: middle_uy, file: height.csv, deviation: -1}
-  - {type: histroy, file: height.csv}
+  - {type: historyy, file: height.csv}
   - {type: front, file: none.csv, deviation: 0.1, value: middle_uy}
   - {type: history, column: middle_ux, file: height.csv, deviation: 0.1}
-methode: ensemble
+method_: ensemble
 """)
         found = self.errors()
         self.assertEqual([place[:2] for place in found],
