@@ -45,7 +45,7 @@ void calibrate(const CalibrateOptions& options)
   if (const char* before = std::getenv("PYTHONPATH"); before != nullptr && *before != '\0')
     path += fmt::format(":{}", before);
   ::setenv("PYTHONPATH", path.c_str(), 1);
-  std::vector<std::string> words{"-m", "talus", "calibrate", options.specification.string(), "--program", self.string()};
+  std::vector<std::string> words{"-P", "-m", "talus", "calibrate", options.specification.string(), "--program", self.string()};
   if (options.out)
     words.insert(words.end(), {"--out", options.out->string()});
   if (options.jobs)

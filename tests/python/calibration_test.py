@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
 import talus  # noqa: E402
 from talus import __main__ as commands  # noqa: E402
-from talus.calibration import evaluation, read_specification  # noqa: E402
+from talus.calibration import evaluation, observations, read_specification  # noqa: E402
 from talus.calibration.files import only_writer, write_whole  # noqa: E402
 from talus.calibration.observations import sampled  # noqa: E402
 from talus.calibration.outlines import contour_lines, read_outline, resampled, signed_distances  # noqa: E402
@@ -228,6 +228,20 @@ class Calibrations(OfABlock):
             self.calibrate()
         self.assertEqual([(message.line, message.column) for message in caught.exception.errors], [(6, 5), (7, 5)])
         self.assertIn("middle_uy", caught.exception.errors[0].text)
+
+    def test_a_run_without_a_value_is_stepped_around_and_told(self):
+        lines, of_run, calls = [], observations.Curve.of_run, []
+
+        def once(curve, run):
+            calls.append(run)
+            if len(calls) == 2:
+                raise observations.NotComparable("nothing is there")
+            return of_run(curve, run)
+        with mock.patch.object(observations.Curve, "of_run", once):
+            result = self.calibrate(tell=lines.append)
+        self.assertIn("cannot be compared: nothing is there", lines[1])
+        self.assertAlmostEqual(result.values["bodies[0].velocity[1]"], 1.2, delta=0.02)
+        self.assertEqual(result.contents["runs"]["failed"], 1)
 
     def test_a_run_that_fails_at_the_start_ends_it(self):
         self.write("calibration.yaml", CALIBRATION + "set: {watch.speed: 0.01}\n")

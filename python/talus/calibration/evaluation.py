@@ -20,7 +20,7 @@ from ..running import Progress, resume, run
 from ..runs import BEFORE_THE_END, Run
 from ..scenes import flow
 from .files import write_whole
-from .observations import NotComparable
+from .observations import NotComparable, Observation
 from .places import Problems
 from .specification import Specification
 
@@ -38,8 +38,10 @@ class Record:
     status   "to be run", "done" or "failed"
     reused   whether it was done before
     error    why it failed
+    commit   of the program
     values_of_run   numbers to compare with the observations, an array for each; empty if it failed
     chi2     sum of the squared residuals over their standard deviations, for each observation
+    not_comparable  observations that the run cannot be compared with, each with the reason
     """
 
     number: int
@@ -52,6 +54,7 @@ class Record:
     commit: str = ""
     values_of_run: list[np.ndarray] = field(default_factory=list, repr=False)
     chi2: list[float] = field(default_factory=list)
+    not_comparable: list[tuple[Observation, str]] = field(default_factory=list, repr=False)
 
 
 class Stopped(Exception):
@@ -77,7 +80,7 @@ class Evaluation:
 
     def __call__(self, positions: Sequence[np.ndarray], purpose: str) -> list[np.ndarray | None]:
         """Residuals over their standard deviations at positions between the bounds, (n,) each; those of priors are the last ones.  None
-        where a run failed.  Raises SceneError where no run can be compared with an observation."""
+        where a run failed.  Raises SceneError if no run so far can be compared with the observations."""
         records = [self._record(self.spec.values(position), purpose) for position in positions]
         waiting = list(dict.fromkeys(record.folder for record in records if record.status == "to be run"))
         with ThreadPoolExecutor(self.jobs) as pool:
@@ -90,6 +93,7 @@ class Evaluation:
                     future.cancel()
                 raise
         write_whole(self.out / "calibration.csv", self.table())
+        self._raise_not_comparable()
         return [self._residuals(record, position) for record, position in zip(records, positions)]
 
     def without_priors(self, positions: Sequence[np.ndarray], purpose: str) -> list[np.ndarray | None]:
@@ -153,7 +157,8 @@ class Evaluation:
         self._compare(record, results)
         told = "is done" if record.reused else f"took {results.summary['cost']['wall [s]']:.1f} s"
         shown = ", ".join(f"{key} {value:.6g}" for key, value in record.values.items())
-        self.tell(f"run {record.number} ({record.purpose}) {told}: {shown}: chi squared {sum(record.chi2):.4g}")
+        result = f"chi squared {sum(record.chi2):.4g}" if record.chi2 else f"cannot be compared: {record.error}"
+        self.tell(f"run {record.number} ({record.purpose}) {told}: {shown}: {result}")
 
     def _start(self, record: Record, summary: Mapping[str, Any]) -> None:
         """Starts a run, or continues one that was stopped or killed after a checkpoint."""
@@ -176,22 +181,30 @@ class Evaluation:
             raise Stopped
 
     def _compare(self, record: Record, results: Run) -> None:
-        """Compares a run with all observations; what no run can be compared with is an error at its place in the file."""
-        problems = Problems(self.spec.file)
+        """Compares a run with all observations; it has failed if that cannot be done, such as for a deposit without a rim."""
+        found, wrong = [], []
         for observation in self.spec.observations:
             try:
-                values = observation.of_run(results)
+                found.append(observation.of_run(results))
             except (NotComparable, FileError) as error:
-                problems.add(observation.entry.line, observation.entry.column, observation.entry.key, f"cannot be compared: {error}")
-                continue
-            record.values_of_run.append(values)
-            record.chi2.append(float(np.sum(((values - observation.values) / observation.deviations) ** 2)))
-        if problems.messages and record.number == 1:
-            problems.raise_any()
-        record.status = "done"
-        if problems.messages:  # such as a deposit that is nowhere as thick as the threshold
-            record.status, record.error = "failed", "; ".join(message.text for message in problems.messages)
-            record.values_of_run, record.chi2 = [], []
+                wrong.append((observation, str(error)))
+        record.not_comparable, record.error = wrong, "; ".join(text for _, text in wrong)
+        if not wrong:
+            record.values_of_run = found
+            record.chi2 = [float(np.sum(((values - observation.values) / observation.deviations) ** 2))
+                           for observation, values in zip(self.spec.observations, found)]
+        record.status = "failed" if wrong else "done"
+
+    def _raise_not_comparable(self) -> None:
+        """Raises SceneError with what no run could be compared with, at its place in the file; does nothing once a run could."""
+        if any(record.status == "done" for record in self.records):
+            return
+        problems = Problems(self.spec.file)
+        for observation, text in (entry for record in self.records for entry in record.not_comparable):
+            problems.add(observation.entry.line, observation.entry.column, observation.entry.key, f"cannot be compared: {text}")
+            if len({message.key for message in problems.messages}) < len(problems.messages):
+                problems.messages.pop()  # another run said the same
+        problems.raise_any()
 
     def _residuals(self, record: Record, position: np.ndarray) -> np.ndarray | None:
         if record.status != "done":

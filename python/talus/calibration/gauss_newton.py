@@ -26,7 +26,7 @@ _DOMINATED = 1.0        # second over first difference above which a derivative 
 
 CONVERGED = "converged"
 USED_UP = "the runs are used up"
-NO_DECREASE = "no step reduces chi squared: the residuals scatter more than the stated deviations"
+NO_DECREASE = "no step reduces chi squared any more: it is rough at this scale"
 
 
 class NoResiduals(Exception):

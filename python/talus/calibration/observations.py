@@ -200,6 +200,10 @@ def _constant(block: Block, count: int) -> np.ndarray | None:
 
 def _read_history(block: Block, name: str) -> Observation | None:
     column = block.text("column")
+    if not column:
+        for name_of_key in ("file", "time", "value", "deviation"):
+            block.take(name_of_key)
+        return None  # what is missing is told
     return _read_curve(block, column if name == "history" else name, "history", column, "time", column)
 
 
