@@ -89,6 +89,20 @@ class GaussNewton(unittest.TestCase):
         with self.assertRaisesRegex(NoResiduals, "parameter 2"):
             minimise(Calls(lambda x: None if x[1] != 0.4 else bent(x)), self.start, self.steps, most=40, tolerance=1e-4)
 
+    def test_steps_that_overshoot_are_shortened_by_damping(self):
+        def saturating(x):
+            return np.arctan(20 * (x - 0.5))
+        fit = minimise(Calls(saturating), np.array([0.9]), np.array([0.01]), most=60, tolerance=1e-8)
+        self.assertAlmostEqual(fit.position[0], 0.5, places=4)
+        self.assertEqual(fit.ending, CONVERGED)
+
+    def test_a_step_corrects_the_jacobian_by_what_it_has_shown(self):
+        calls = Calls(lambda x: linear(x) + 8 * (x - HIDDEN) ** 2 @ np.ones((2, 4)))
+        fit = minimise(calls, self.start, self.steps, most=60, tolerance=1e-8)
+        np.testing.assert_allclose(fit.position, HIDDEN, atol=1e-4)
+        self.assertEqual(calls.purposes.count("difference"), 2 * 4)  # at the start and at the minimum
+        self.assertLessEqual(calls.purposes.count("step"), 5)
+
     def test_forward_differences_take_half_of_the_evaluations(self):
         calls = Calls(linear)
         fit = minimise(calls, self.start, self.steps, most=40, tolerance=1e-4, differences="forward")
