@@ -310,6 +310,18 @@ method_: ensemble
         self.assertAlmostEqual(spec.parameters[0].value(spec.parameters[0].position(-9.81)), -9.81)
 
 
+class Examples(InAFolder):
+    def test_the_observations_of_the_deposit_are_those_that_the_script_computes(self):
+        script = ROOT / "python/examples/calibration/synthetic_deposit.py"
+        subprocess.run([sys.executable, "-B", script, "--out", "."], check=True, capture_output=True)
+        for name in ("scene.yaml", "calibration.yaml"):
+            self.write(name, (ROOT / "scenes/deposit" / name).read_text(encoding="utf-8"))
+        stored, written = (read_specification(folder / "calibration.yaml").observations for folder in (ROOT / "scenes/deposit", Path(".")))
+        self.assertEqual([(one.name, len(one.values)) for one in stored], [("thickness", 210), ("outline", 30), ("front", 19), ("top_uz", 19)])
+        for one, other in zip(stored, written):
+            np.testing.assert_allclose(one.values, other.values, atol=0.02)
+
+
 class Command(OfABlock):
     def call(self, *words):
         with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(io.StringIO()) as complained:

@@ -2,7 +2,7 @@
 """How often does the stated uncertainty of a calibration contain the truth?  Calibrates scenes/deposit with observations of hidden values,
 each time with other errors of measurement, and counts.
 
-Usage: calibration_coverage.py [--out DIR] [--count N] [--method gauss_newton|ensemble] [--near]
+Usage: coverage.py [--out DIR] [--count N] [--method gauss_newton|ensemble] [--near]
 
 Prints the estimates over the hidden values, and the number of intervals that contain these.  Takes a minute for each of N.
 --near begins at values 5 % above the hidden ones.

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "python"))  # not needed where the package is installed
 import talus  # noqa: E402
 from talus.calibration.outlines import contour_lines, resampled  # noqa: E402

@@ -2,12 +2,12 @@
 """Which step of the differences suits a calibration?  Calibrates scenes/deposit with observations of hidden values without errors, with
 differences over several shares of the range between the bounds.
 
-Usage: calibration_steps.py [--out DIR] [--steps 0.005 0.02 ...]
-       calibration_steps.py --scatter [--out DIR]
+Usage: difference_steps.py [--out DIR] [--steps 0.005 0.02 ...]
+       difference_steps.py --scatter [--out DIR]
 
 Prints for each step the estimates over the hidden values and chi squared after at most 30 runs.  Takes a minute or two for each step.
 --scatter prints how far derivatives by the friction angle are from those with a step of a tenth of it, for the column in two dimensions of
-gallery/friction_study.py: thickness of the deposit, position of its front, and that of its centre over time.
+../gallery/friction_study.py: thickness of the deposit, position of its front, and that of its centre over time.
 """
 import argparse
 import shutil
@@ -24,7 +24,7 @@ SHARES = (0.003, 0.01, 0.02, 0.05, 0.1, 0.2)  # of the friction angle
 
 def scatter(out):
     """Distances of derivatives from those with a step of a tenth of the friction angle, over the length of these."""
-    sys.path.insert(0, str(Path(__file__).parent / "gallery"))
+    sys.path.insert(0, str(Path(__file__).parents[1] / "gallery"))
     from friction_study import SCENE as column
     times, angle = np.arange(0.1, 1, 0.05), 26.0
 
