@@ -16,12 +16,13 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
 import talus  # noqa: E402
 from talus import __main__ as commands  # noqa: E402
-from talus.calibration import evaluation, observations, read_specification  # noqa: E402
+from talus.calibration import evaluation, observations, read_specification, results  # noqa: E402
 from talus.calibration.files import only_writer, write_whole  # noqa: E402
 from talus.calibration.observations import sampled  # noqa: E402
 from talus.calibration.outlines import contour_lines, read_outline, resampled, signed_distances  # noqa: E402
@@ -164,8 +165,8 @@ class Calibrations(OfABlock):
         self.assertLessEqual(runs.rows, 20)
         self.assertLess(runs["chi2"].min(), 0.1)
         self.assertGreater((self.folder / "out/calibration.png").stat().st_size, 5000)
-        import yaml
         self.assertEqual(yaml.safe_load(Path("out/best.yaml").read_text(encoding="utf-8")), result.values)
+        self.assertEqual(yaml.safe_load(f"a: {results._number(1e-5)}"), {"a": 1e-5})
         self.assertEqual([path.name for path in Path("out").iterdir() if path.name.startswith(".")], [])
 
     def test_runs_that_are_done_are_not_repeated_and_others_are(self):

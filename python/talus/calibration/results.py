@@ -110,10 +110,16 @@ def write_results(spec: Specification, evaluation: Evaluation, position: np.ndar
     }
     command = shlex.join(["talus", "run", str(spec.scene), *set_options({**spec.changes, **best.values})])
     lines = [f"# Estimates of {spec.file.name}: talus.run(scene, set=...) takes them, and the program as", f"# {command}",
-             *(f"{key}: {flow(value)}" for key, value in best.values.items())]
+             *(f"{key}: {_number(value)}" for key, value in best.values.items())]
     write_whole(evaluation.out / "best.yaml", "\n".join(lines) + "\n")
     write_whole(evaluation.out / "calibration.json", json.dumps(contents, indent=2, ensure_ascii=False) + "\n")
     return Calibration(evaluation.out)
+
+
+def _number(value: float) -> str:
+    """A number as YAML 1.1 reads it too, which is that of PyYAML: with a point before an exponent."""
+    text = flow(value)
+    return text.replace("e", ".0e") if "." not in text else text
 
 
 def _estimate(parameter: Parameter, position: float, deviation: float) -> dict[str, Any]:
