@@ -19,13 +19,13 @@ _START, _BEST, _MEASURED = "0.6", "tab:blue", "black"
 
 
 def write_figure(result: Calibration, observations: list[Observation], start: Record, best: Record) -> Path:
-    """Draws a column for each observation, above it with the run at the start (grey) and the best one (blue), below the residuals of both
+    """Draws a column for each observation, above it with the first run (grey) and the best one (blue), below the residuals of both
     over the standard deviations.  Returns the path of the picture, calibration.png.  Needs matplotlib."""
     figure = need("matplotlib.figure", "draws pictures").Figure(figsize=(4.4 * len(observations), 7), layout="constrained")
     panels = figure.subplots(2, len(observations), squeeze=False)
     for k, (observation, (above, below)) in enumerate(zip(observations, panels.T)):
         ends = [(record, record.values_of_run[k], colour, label)
-                for record, colour, label in ((start, _START, "start"), (best, _BEST, "estimate")) if record.values_of_run]
+                for record, colour, label in ((start, _START, start.purpose), (best, _BEST, "estimate")) if record.values_of_run]
         {Curve: _draw_curve, Thickness: _draw_thickness, Outline: _draw_outline}[type(observation)](above, observation, ends)
         above.set_title(observation.name, fontsize="medium")
         x = observation.x if isinstance(observation, Curve) else np.arange(1, len(observation.values) + 1)
