@@ -281,6 +281,12 @@ method_: ensemble
             self.assertIn(words, text)
         self.assertEqual(found[1][2], "parameters.materials[0].density.high")
 
+    def test_runs_that_are_too_few_for_a_jacobian_are_refused(self):
+        self.write("calibration.yaml", CALIBRATION + "gauss_newton: {most_runs: 4}\n")
+        (line, column, key, text), = self.errors()
+        self.assertEqual((line, column, key), (7, 27, "gauss_newton.most_runs"))
+        self.assertIn(">= 5", text)
+
     def test_a_file_that_is_no_yaml_is_told_at_its_place(self):
         self.write("calibration.yaml", "scene: [scene.yaml\nparameters: 1\n")
         (line, _, _, text), = self.errors()

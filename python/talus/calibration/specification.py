@@ -92,7 +92,7 @@ def read_specification(file: Path) -> Specification:
     changes = _read_changes(block.take("set"), places)
     parameters = _read_parameters(block.take("parameters", required=True), changes, places)
     observations = _read_observations(block.take("observations", required=True))
-    search = _read_search(block)
+    search = _read_search(block, len(parameters))
     block.end()
     top.problems.raise_any()
     assert scene is not None
@@ -186,7 +186,7 @@ def _read_observations(entry: Entry | None) -> list[Observation]:
     return found
 
 
-def _read_search(block: Block) -> Search:
+def _read_search(block: Block, parameters: int) -> Search:
     usual = Search()
     method = block.word("method", METHODS, usual.method)
     is_scaled = block.word("uncertainty", ("stated", "scaled"), "stated") == "scaled"
@@ -195,14 +195,16 @@ def _read_search(block: Block) -> Search:
         stray.wrong(f"settings of another method than the one that is chosen (method: {method})")
     entry = block.take(method)
     if entry is None:
-        return Search(method=method, is_scaled=is_scaled)
+        return Search(method=method, most_runs=max(usual.most_runs, 1 + 2 * parameters), is_scaled=is_scaled)
     own = Block(entry)
     if method == "ensemble":
         search = Search(method, members=own.whole("members", usual.members, low=3), seed=own.whole("seed", usual.seed, low=0),
                         assimilations=own.whole("assimilations", usual.assimilations, low=1), is_scaled=is_scaled)
     else:
         tolerance = own.number("tolerance", usual.tolerance, above=0)
-        search = Search(method, most_runs=own.whole("most_runs", usual.most_runs, low=1), tolerance=tolerance or usual.tolerance,
-                        differences=own.word("differences", ("central", "forward"), usual.differences), is_scaled=is_scaled)
+        differences = own.word("differences", ("central", "forward"), usual.differences)
+        fewest = 1 + parameters * (2 if differences == "central" else 1)  # the start and a Jacobian
+        search = Search(method, most_runs=own.whole("most_runs", max(usual.most_runs, fewest), low=fewest),
+                        tolerance=tolerance or usual.tolerance, differences=differences, is_scaled=is_scaled)
     own.end()
     return search
