@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of talus.calibration: what it reads and writes, and calibrations of a block that falls.
+"""Tests of talus.calibration: what it reads and writes, and calibrations of a block that falls and of a deposit.
 
 Usage: calibration_test.py PROGRAM, the built talus.
 """
@@ -24,9 +24,6 @@ import talus  # noqa: E402
 from talus import __main__ as commands  # noqa: E402
 from talus.calibration import evaluation, observations, read_specification, results  # noqa: E402
 from talus.calibration.files import only_writer, write_whole  # noqa: E402
-from talus.calibration.observations import sampled  # noqa: E402
-from talus.calibration.outlines import contour_lines, read_outline, resampled, signed_distances  # noqa: E402
-from talus.calibration.surveys import read_survey  # noqa: E402
 
 
 class InAFolder(unittest.TestCase):
@@ -46,60 +43,6 @@ class InAFolder(unittest.TestCase):
     def write(self, name, text):
         (self.folder / name).write_text(text, encoding="utf-8")
         return self.folder / name
-
-
-class Map:
-    """A map of 4 by 3 cells of 1 m x 2 m, whose south-western corner is (10, 20)."""
-
-    x, y, cell, extent = np.array([10.5, 11.5, 12.5, 13.5]), np.array([25.0, 23.0, 21.0]), (1.0, 2.0), (10, 14, 20, 26)
-    values = np.array([[1.0, 2.0, 3.0, np.nan], [2.0, 3.0, 4.0, np.nan], [3.0, 4.0, 5.0, np.nan]], "f4")
-
-
-class Measurements(InAFolder):
-    def test_grids_are_read_with_the_centres_of_their_cells(self):
-        rows = "1 2 3\n4 5 -9\n"
-        for name, heading in (("corner.asc", "xllcorner 10\nyllcorner 20"), ("centre.asc", "xllcenter 11\nyllcenter 21")):
-            x, y, values = read_survey(self.write(name, f"NCOLS 3\nNROWS 2\n{heading}\ncellsize 2\nNODATA_value -9\n{rows}"))
-            np.testing.assert_array_equal(x, [11, 13, 15])
-            np.testing.assert_array_equal(y, [23, 21])
-            np.testing.assert_array_equal(values, [[1, 2, 3], [4, 5, np.nan]])
-
-    def test_damaged_grids_are_told(self):
-        for text, words in (("nrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n", "ncols"),
-                            ("ncols 2\nnrows 1\ncellsize 1\n1 2\n", "xllcorner"),
-                            ("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n", "reshape"), ("ncols two\n", "two")):
-            with self.assertRaisesRegex(talus.Damaged, words):
-                read_survey(self.write("bad.asc", text))
-
-    def test_maps_are_linear_between_centres_and_zero_without_values(self):
-        places = np.array([[10.5, 25.0], [11.0, 24.0], [13.5, 23.0], [100.0, 23.0]])
-        np.testing.assert_allclose(sampled(Map(), places), [1.0, 2.0, 0.0, 0.0])
-
-    def test_a_contour_and_distances_to_it(self):
-        points = np.concatenate(contour_lines(Map(), 2.5))
-        for expected in ([11.0, 23.0], [12.0, 25.0], [10.5, 22.0]):
-            self.assertLess(np.linalg.norm(points - expected, axis=1).min(), 1e-9, expected)
-        square = [np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]])]
-        points = np.array([[1.0, 0.5], [3.0, 1.0], [3.0, 3.0], [2.0, 1.0]])
-        found = signed_distances(points, square, np.array([True, False, False, False]))
-        np.testing.assert_allclose(found, [0.5, -1.0, -math.sqrt(2), 0.0], atol=1e-12)
-
-    def test_outlines_of_all_kinds(self):
-        ring = [[0, 0], [4, 0], [4, 2], [0, 0]]
-        polygon = {"type": "Polygon", "coordinates": [ring]}
-        feature = {"type": "Feature", "geometry": polygon}
-        for value in (polygon, feature, {"type": "FeatureCollection", "features": [feature]},
-                      {"type": "MultiPolygon", "coordinates": [[ring]]}, {"type": "LineString", "coordinates": ring},
-                      {"type": "MultiLineString", "coordinates": [ring]}):
-            line, = read_outline(self.write("outline.geojson", json.dumps(value)))
-            np.testing.assert_array_equal(line, ring)
-        np.testing.assert_array_equal(resampled([np.array(ring, float)], None), ring[:-1])
-        np.testing.assert_allclose(resampled([np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]])], 1.0), [[0, 0], [1, 0], [2, 0], [2, 1]])
-        one, two = read_outline(self.write("outline.csv", "line,east [m],north [m]\n1,0,0\n1,1,0\n2,5,5\n2,6,7\n"))
-        np.testing.assert_array_equal([*one, *two], [[0, 0], [1, 0], [5, 5], [6, 7]])
-        for text in ('{"type": "Point", "coordinates": [0, 0]}', "[", '{"type": "LineString", "coordinates": [[0, 0]]}'):
-            with self.assertRaises(talus.Damaged):
-                read_outline(self.write("bad.geojson", text))
 
 
 SCENE = """\
@@ -324,9 +267,25 @@ class Examples(InAFolder):
         for name in ("scene.yaml", "calibration.yaml"):
             self.write(name, (ROOT / "scenes/deposit" / name).read_text(encoding="utf-8"))
         stored, written = (read_specification(folder / "calibration.yaml").observations for folder in (ROOT / "scenes/deposit", Path(".")))
-        self.assertEqual([(one.name, len(one.values)) for one in stored], [("thickness", 210), ("outline", 30), ("front", 19), ("top_uz", 19)])
+        self.assertEqual([(one.name, len(one.values)) for one in stored],
+                         [("thickness", 210), ("outline", 30), ("front", 19), ("top_uz", 19)])
         for one, other in zip(stored, written):
             np.testing.assert_allclose(one.values, other.values, atol=0.02)
+
+    def test_a_run_with_the_hidden_values_agrees_with_observations_without_errors(self):
+        folder = ROOT / "python/examples/calibration"
+        words = [sys.executable, "-B", folder / "synthetic_deposit.py", "--out", ".", "--errors", "0"]
+        subprocess.run(words, check=True, capture_output=True)
+        for name in ("scene.yaml", "calibration.yaml"):
+            self.write(name, (ROOT / "scenes/deposit" / name).read_text(encoding="utf-8"))
+        spec = read_specification(Path("calibration.yaml"))
+        hidden = {"materials[0].friction_angle": 26, "materials[0].cohesion": 150, "boundaries[0].coefficient": 0.35}
+        best, start = talus.run("scene.yaml", set=hidden, out="hidden"), talus.run("scene.yaml", out="start")
+        for one in spec.observations:
+            np.testing.assert_allclose(one.of_run(best), one.values, atol=2e-5, err_msg=one.name)  # digits of the files
+            self.assertGreater(np.sqrt(np.mean(one.residuals(start) ** 2)), 3, one.name)
+        covered = spec.observations[1].of_run(start)  # the deposit of stronger sand ends before the rim
+        self.assertLess(covered.max(), 0)
 
 
 class Command(OfABlock):

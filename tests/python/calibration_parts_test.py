@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""Tests of the methods of talus.calibration on functions with known answers: least squares, ensembles, and their uncertainty.
+"""Tests of the parts of talus.calibration on cases with known answers: least squares, ensembles, their uncertainty, maps and outlines.
 
-Usage: calibration_methods_test.py PROGRAM, which is not needed.
+Usage: calibration_parts_test.py PROGRAM, which is not needed.
 """
+import json
 import math
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -12,8 +14,12 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
+import talus  # noqa: E402
 from talus.calibration.ensemble import assimilate, first_members  # noqa: E402
 from talus.calibration.gauss_newton import CONVERGED, NO_DECREASE, USED_UP, NoResiduals, minimise  # noqa: E402
+from talus.calibration.observations import sampled  # noqa: E402
+from talus.calibration.outlines import contour_lines, read_outline, resampled, signed_distances  # noqa: E402
+from talus.calibration.surveys import read_survey  # noqa: E402
 from talus.calibration.uncertainty import interval, of_ensemble, of_jacobian  # noqa: E402
 
 HIDDEN = np.array([0.3, 0.6])
@@ -208,6 +214,69 @@ class Ensembles(unittest.TestCase):
         told = of_ensemble(found.positions, members, found.residuals, ["a", "b"])
         self.assertIn("b is not identifiable", "\n".join(told.warnings))
         self.assertNotIn("a is not identifiable", "\n".join(told.warnings))
+
+
+class Map:
+    """A map of 4 by 3 cells of 1 m x 2 m, whose south-western corner is (10, 20)."""
+
+    x, y, cell, extent = np.array([10.5, 11.5, 12.5, 13.5]), np.array([25.0, 23.0, 21.0]), (1.0, 2.0), (10, 14, 20, 26)
+    values = np.array([[1.0, 2.0, 3.0, np.nan], [2.0, 3.0, 4.0, np.nan], [3.0, 4.0, 5.0, np.nan]], "f4")
+
+
+class Measurements(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = Path(scratch.name)
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return self.folder / name
+
+    def test_grids_are_read_with_the_centres_of_their_cells(self):
+        rows = "1 2 3\n4 5 -9\n"
+        for name, heading in (("corner.asc", "xllcorner 10\nyllcorner 20"), ("centre.asc", "xllcenter 11\nyllcenter 21")):
+            x, y, values = read_survey(self.write(name, f"NCOLS 3\nNROWS 2\n{heading}\ncellsize 2\nNODATA_value -9\n{rows}"))
+            np.testing.assert_array_equal(x, [11, 13, 15])
+            np.testing.assert_array_equal(y, [23, 21])
+            np.testing.assert_array_equal(values, [[1, 2, 3], [4, 5, np.nan]])
+
+    def test_damaged_grids_are_told(self):
+        for text, words in (("nrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n", "ncols"),
+                            ("ncols 2\nnrows 1\ncellsize 1\n1 2\n", "xllcorner"),
+                            ("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n", "reshape"), ("ncols two\n", "two")):
+            with self.assertRaisesRegex(talus.Damaged, words):
+                read_survey(self.write("bad.asc", text))
+
+    def test_maps_are_linear_between_centres_and_zero_without_values(self):
+        places = np.array([[10.5, 25.0], [11.0, 24.0], [13.5, 23.0], [100.0, 23.0]])
+        np.testing.assert_allclose(sampled(Map(), places), [1.0, 2.0, 0.0, 0.0])
+
+    def test_a_contour_and_distances_to_it(self):
+        points = np.concatenate(contour_lines(Map(), 2.5))
+        for expected in ([11.0, 23.0], [12.0, 25.0], [10.5, 22.0]):
+            self.assertLess(np.linalg.norm(points - expected, axis=1).min(), 1e-9, expected)
+        square = [np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]])]
+        points = np.array([[1.0, 0.5], [3.0, 1.0], [3.0, 3.0], [2.0, 1.0]])
+        found = signed_distances(points, square, np.array([True, False, False, False]))
+        np.testing.assert_allclose(found, [0.5, -1.0, -math.sqrt(2), 0.0], atol=1e-12)
+
+    def test_outlines_of_all_kinds(self):
+        ring = [[0, 0], [4, 0], [4, 2], [0, 0]]
+        polygon = {"type": "Polygon", "coordinates": [ring]}
+        feature = {"type": "Feature", "geometry": polygon}
+        for value in (polygon, feature, {"type": "FeatureCollection", "features": [feature]},
+                      {"type": "MultiPolygon", "coordinates": [[ring]]}, {"type": "LineString", "coordinates": ring},
+                      {"type": "MultiLineString", "coordinates": [ring]}):
+            line, = read_outline(self.write("outline.geojson", json.dumps(value)))
+            np.testing.assert_array_equal(line, ring)
+        np.testing.assert_array_equal(resampled([np.array(ring, float)], None), ring[:-1])
+        np.testing.assert_allclose(resampled([np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]])], 1.0), [[0, 0], [1, 0], [2, 0], [2, 1]])
+        one, two = read_outline(self.write("outline.csv", "line,east [m],north [m]\n1,0,0\n1,1,0\n2,5,5\n2,6,7\n"))
+        np.testing.assert_array_equal([*one, *two], [[0, 0], [1, 0], [5, 5], [6, 7]])
+        for text in ('{"type": "Point", "coordinates": [0, 0]}', "[", '{"type": "LineString", "coordinates": [[0, 0]]}'):
+            with self.assertRaises(talus.Damaged):
+                read_outline(self.write("bad.geojson", text))
 
 
 if __name__ == "__main__":
