@@ -80,7 +80,7 @@ for ParaView, as tables, and as pictures.")
   endif()
   set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3")
   set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
-      "libgl1-mesa-dri, openmpi-bin, python3-h5py, python3-lz4, python3-markdown, python3-matplotlib, python3-numpy, xauth, xvfb")
+      "libgl1-mesa-dri, openmpi-bin, python3-contourpy, python3-h5py, python3-lz4, python3-markdown, python3-matplotlib, python3-numpy, python3-scipy, python3-yaml, xauth, xvfb")
   set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg, gmsh, paraview, python3-pandas, python3-xarray")
   include(CPack)
 endmacro()

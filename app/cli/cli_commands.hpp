@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/bench/bench_command.hpp"
+#include "app/commands/calibrate_command.hpp"
 #include "app/commands/check_command.hpp"
 #include "app/commands/converge/converge_command.hpp"
 #include "app/commands/diff/diff_command.hpp"
@@ -63,7 +64,7 @@ class ResultCommands {
   int status_ = 0;
 };
 
-/// The commands with many runs: sweep, converge, fos, verify, tradeoff, bench.
+/// The commands with many runs: sweep, converge, fos, calibrate, verify, tradeoff, bench.
 class StudyCommands {
  public:
   void add_to(CLI::App& app);
@@ -72,12 +73,14 @@ class StudyCommands {
   void add_sweep(CLI::App& app);
   void add_converge(CLI::App& app);
   void add_fos(CLI::App& app);
+  void add_calibrate(CLI::App& app);
   void add_suite(CLI::App& app, const std::string& name, const std::string& help, SuiteOptions& options);
   void add_bench(CLI::App& app);
 
   SweepOptions sweep_;
   ConvergeOptions converge_;
   FosOptions fos_;
+  CalibrateOptions calibrate_;
   SuiteOptions verify_, tradeoff_;
   BenchOptions bench_;
 };

@@ -91,6 +91,21 @@ void StudyCommands::add_fos(CLI::App& app)
   fos->callback([this] { find_fos(fos_); });
 }
 
+void StudyCommands::add_calibrate(CLI::App& app)
+{
+  CLI::App* calibrate = app.add_subcommand("calibrate", "find parameters of a scene from observations, with their uncertainty");
+  calibrate->add_option("specification", calibrate_.specification, "file (.yaml) that names scene, parameters and observations")
+      ->type_name(scene_value)
+      ->required();
+  calibrate->add_option("--out", calibrate_.out, "folder of runs and results; default runs/<name of the file>")->type_name(folder_value);
+  calibrate->add_option("--jobs", calibrate_.jobs, "runs at a time; default 1")->check(number_within(1, 1024));
+  calibrate->add_option("--threads", calibrate_.threads, "threads of each; default as for a run, with --jobs the cores over that")
+      ->check(number_within(1, 1024));
+  calibrate->add_flag("!--no-pictures", calibrate_.pictures, "draw nothing");
+  calibrate->add_flag("--quiet", calibrate_.quiet, "only the results");
+  calibrate->callback([this] { talus::calibrate(calibrate_); });
+}
+
 void StudyCommands::add_suite(CLI::App& app, const std::string& name, const std::string& help, SuiteOptions& options)
 {
   const bool verify = name == "verify";
@@ -143,6 +158,7 @@ void StudyCommands::add_to(CLI::App& app)
   add_sweep(app);
   add_converge(app);
   add_fos(app);
+  add_calibrate(app);
   add_suite(app, "verify", "run the benchmarks against their references; write verify.json and a report", verify_);
   add_suite(app, "tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
   add_bench(app);

@@ -1,13 +1,11 @@
 // The commands talus verify and talus tradeoff: finds the suite, which is written in Python, and replaces this process by it.
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-
 #include "app/commands/suite_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "app/commands/python_process.hpp"
 #include "core/error.hpp"
 
 namespace talus {
@@ -47,9 +45,7 @@ void run_suite(const SuiteOptions& options)
 {
   const fs::path self = fs::read_symlink("/proc/self/exe");
   const std::string script = options.suite + ".py";
-  // Debian's Python, which has Debian's modules, is preferred to others on the path; -B: it writes no files beside installed scripts.
-  const std::string python = ::access("/usr/bin/python3", X_OK) == 0 ? "/usr/bin/python3" : "python3";
-  std::vector<std::string> words{python, "-B", (suite_folder(self, script) / script).string(), "--program", self.string()};
+  std::vector<std::string> words{(suite_folder(self, script) / script).string(), "--program", self.string()};
   const auto add_number = [&](const char* option, const std::optional<int>& number) {
     add(option, number ? std::optional(std::to_string(*number)) : std::nullopt, words);
   };
@@ -64,14 +60,7 @@ void run_suite(const SuiteOptions& options)
   if (options.regression)
     words.emplace_back("--regression");
   words.insert(words.end(), options.cases.begin(), options.cases.end());
-
-  std::vector<char*> pointers;
-  for (std::string& word : words)
-    pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  std::fflush(nullptr);
-  ::execvp(python.c_str(), pointers.data());
-  throw EnvironmentError(fmt::format("cannot start {}: {}", python, std::strerror(errno)));
+  become_python(words);
 }
 
 }  // namespace talus

@@ -8,14 +8,21 @@ from .errors import MissingPackage
 
 # module -> its Debian package, or None where Debian 12 has none, and its name for pip
 KNOWN = {
+    "contourpy": ("python3-contourpy", "contourpy"),
     "h5py": ("python3-h5py", "h5py"),
     "lz4.block": ("python3-lz4", "lz4"),
     "matplotlib": ("python3-matplotlib", "matplotlib"),
+    "matplotlib.figure": ("python3-matplotlib", "matplotlib"),
     "matplotlib.pyplot": ("python3-matplotlib", "matplotlib"),
     "matplotlib.collections": ("python3-matplotlib", "matplotlib"),
     "pandas": ("python3-pandas", "pandas"),
     "pyvista": (None, "pyvista"),
+    "scipy.ndimage": ("python3-scipy", "scipy"),
+    "scipy.optimize": ("python3-scipy", "scipy"),
+    "scipy.stats": ("python3-scipy", "scipy"),
+    "scipy.stats.qmc": ("python3-scipy", "scipy"),
     "xarray": ("python3-xarray", "xarray"),
+    "yaml": ("python3-yaml", "pyyaml"),
 }
 
 

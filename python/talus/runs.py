@@ -14,7 +14,7 @@ from .fields import Mesh, Particles, Series
 from .rasters import Maps
 from .tables import Table
 
-_BEFORE_THE_END = "the run did not end"  # app/run/summary.hpp
+BEFORE_THE_END = "the run did not end"  # app/run/summary.hpp
 
 
 def _written(path: Path, what: str) -> Path:
@@ -49,7 +49,7 @@ class Run:
     def status(self) -> str:
         """`done`, `stopped`, `failed`, or `not ended` for a run in progress or a killed one."""
         summary = self.summary
-        return "not ended" if summary.get("message") == _BEFORE_THE_END else summary["status"]
+        return "not ended" if summary.get("message") == BEFORE_THE_END else summary["status"]
 
     @property
     def bodies(self) -> list[str]:
