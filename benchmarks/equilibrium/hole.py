@@ -18,13 +18,14 @@ class Salencon:
     """
 
     def __init__(self, data, pressure, dilation):
-        self.radius, self.far, self.poisson, self.pressure = (
-            *(data[key] for key in ("radius [m]", "stress at infinity [Pa]", "poisson_ratio")), pressure)
+        self.radius, self.far, self.poisson = (data[key] for key in ("radius [m]", "stress at infinity [Pa]", "poisson_ratio"))
+        self.pressure = pressure
         angles = np.radians([data["friction_angle [deg]"], dilation])
         self.shear = data["youngs_modulus [Pa]"] / (2 * (1 + self.poisson))
         self.apex = data["cohesion [Pa]"] / np.tan(angles[0])
         self.ratio, self.flow = np.tan(np.pi / 4 + np.sign(pressure - self.far) * angles / 2)**2
-        self.jump = (self.far + self.apex) * (self.ratio - 1) / (self.ratio + 1)  # radial stress at the plastic radius less that at infinity
+        # Radial stress at the plastic radius less that at infinity.
+        self.jump = (self.far + self.apex) * (self.ratio - 1) / (self.ratio + 1)
         self.power = (self.ratio - 1) / self.ratio
         self.plastic = self.radius * ((pressure + self.apex) / (self.far + self.jump + self.apex))**(1 / self.power)
 

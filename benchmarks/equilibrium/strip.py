@@ -3,7 +3,7 @@ import numpy as np
 
 import lab as tools
 
-SIZES = {"surcharge": {"quick": (0.5,), "full": (0.5, 0.25, 0.125)}, "weight": {"quick": (0.5,), "full": (0.5, 0.25, 0.125)}}  # m, near the strip
+SIZES = {"quick": (0.5,), "full": (0.5, 0.25, 0.125)}  # m, near the strip
 INCREMENTS = {"surcharge": 12, "weight": 40}
 LARGE = {"mesh.regions[0].shape.low": [0, -3], "mesh.regions[0].shape.high": [18, 6], "mesh.regions[2].shape.high": [18, 7],
          "bodies[0].shape.low": [0, -3], "bodies[0].shape.high": [18, 6]}
@@ -11,7 +11,7 @@ PLAIN = {"bodies[0].f_bar": False}
 NO_DILATION = {"materials[0].dilation_angle": 0}
 
 
-def soil(angle):
+def friction(angle):
     """Changes to weight.yaml for another angle of friction [deg]."""
     return {"materials[0].friction_angle": angle, "materials[0].dilation_angle": angle,
             "stages[0].initial_stress.k0": round(1 - np.sin(np.radians(angle)), 3)}
@@ -20,7 +20,8 @@ def soil(angle):
 def mesh(place):
     """Soil and mesh are so much wider [m]."""
     wide = 12 + place
-    return {"mesh.regions[0].shape.high": [wide, 6], "mesh.regions[2].shape.high": [wide, 7], "bodies[0].shape.high": [wide, 6]} if place else {}
+    soil, air = [wide, 6], [wide, 7]
+    return {"mesh.regions[0].shape.high": soil, "mesh.regions[2].shape.high": air, "bodies[0].shape.high": soil} if place else {}
 
 
 def factors(angle):
@@ -32,7 +33,8 @@ def factors(angle):
 
 def unit(scene, data):
     """By what the reaction [N] of half a strip is divided: q a, or gamma a^2."""
-    return data["surcharge [Pa]"] * data["half width [m]"] if scene == "surcharge" else data["weight [N/m^3]"] * data["half width [m]"]**2
+    wide = data["half width [m]"]
+    return data["surcharge [Pa]"] * wide if scene == "surcharge" else data["weight [N/m^3]"] * wide**2
 
 
 def expected(scene, data, angle):
@@ -56,7 +58,7 @@ def capacity(run, scene, data):
 
 
 def slope(run, scene, data):
-    """The slope of the load over the last quarter of the settlement as a share of that of the first increment; falling loads count as well."""
+    """The slope of the load over the last quarter of the settlement, rising or falling, as a share of that of the first increment."""
     way, load = (column[:-1] for column in loads(run, scene, data))
     late = way > 0.75 * data["settlement [m]"]
     first = (load[0] - (scene == "surcharge")) / way[0]
@@ -68,6 +70,12 @@ def peak(run, scene, data):
     return np.max(loads(run, scene, data)[1][:-1])
 
 
+def at_end(run, scene, data):
+    """The load of the last increment over that of the one before."""
+    load = loads(run, scene, data)[1]
+    return load[-1] / load[-2]
+
+
 def judge(scene, group, size, angle, kind):
     data = group.data
     judged = size < 0.5 and kind != "no dilation"
@@ -77,15 +85,14 @@ def judge(scene, group, size, angle, kind):
         return (criterion, limit) if judged else ("reported", None)
 
     name = "load over q a" if scene == "surcharge" else "load over gamma a^2"
-    wide = 1 + size / (2 * data["half width [m]"])
+    wide = (1 + size / (2 * data["half width [m]"]))**(1 if scene == "surcharge" else 2)
     return [*group.result(name, "-", lambda run: capacity(run, scene, data), *asked("within", data["within"]), exact),
             *group.result(f"{name}, largest", "-", lambda run: peak(run, scene, data), reference=exact),
-            *group.result(f"{name}, with the strip half a cell wider", "-",
-                          lambda run: capacity(run, scene, data) / (wide if scene == "surcharge" else wide**2), reference=exact),
+            *group.result(f"{name}, with the strip half a cell wider", "-", lambda run: capacity(run, scene, data) / wide, reference=exact),
             *group.result("slope over the last quarter over the first slope", "-", lambda run: slope(run, scene, data),
                           *asked("at most", data["largest slope"]), 0.0),
-            *group.result("load of the last increment over that of the one before", "-",
-                          lambda run: loads(run, scene, data)[1][-1] / loads(run, scene, data)[1][-2], *asked("within", data["largest slope"]), 1.0),
+            *group.result("load of the last increment over that of the one before", "-", lambda run: at_end(run, scene, data),
+                          *asked("within", data["largest slope"]), 1.0),
             *group.result("unbalanced force over the loads at the end", "-", lambda run: run.history["residual"][-1])]
 
 
@@ -101,8 +108,8 @@ def plan(level):
         groups[scene, size, increments, angle, kind] = (
             lambda group, size, _, angle, kind: judge(scene, group, size, angle, kind), changes(size, increments, extra or {}))
 
-    for scene, sizes in SIZES.items():
-        for size in sizes[level]:
+    for scene in INCREMENTS:
+        for size in SIZES[level]:
             add(scene, size, INCREMENTS[scene])
     if level == "full":
         for scene, count in INCREMENTS.items():
@@ -111,5 +118,5 @@ def plan(level):
             add(scene, 0.25, count, 30, "no dilation", NO_DILATION)
         add("surcharge", 0.25, 12, 30, "larger soil", LARGE)
         for angle in (20, 35):
-            add("weight", 0.25, 40, angle, "", soil(angle))
+            add("weight", 0.25, 40, angle, "", friction(angle))
     return groups
