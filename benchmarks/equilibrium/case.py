@@ -1,4 +1,4 @@
-"""Stages without inertia: column under its weight, Cook's membrane, strip footing, elastica, thick cylinder, beside closed forms."""
+"""Stages without inertia beside closed forms: column, Cook's membrane, footings, elastica, thick cylinder, hole in soil."""
 import numpy as np
 
 import fields
@@ -40,6 +40,8 @@ def mesh_of(scene, place):
     """Changes to a scene that make its mesh wider."""
     if scene == "footing":  # both regions
         return {"mesh.regions[0].shape.high": [20 + place, 10], "mesh.regions[2].shape.high": [20 + place, 11]} if place else {}
+    if scene in ("surcharge", "weight", "hole"):
+        return tools.module(CASE, "hole" if scene == "hole" else "strip").mesh(place)
     wide, high = HIGH[scene]
     if scene == "column":  # between smooth sides, which are those of the mesh
         return {"mesh.regions[0].shape.high": [wide + place, high], "bodies[0].shape.high": [wide + place, 50]} if place else {}
@@ -307,16 +309,17 @@ def plan_of(level):
                                                               "stages[0].increments": count}) for nu, size, count in MEMBRANE[level]}
     plan |= {("cantilever", load, size): (judge_cantilever, {
         "mesh.size": size, "loads[0].traction": [0, -round(elastica.force(load, beam), 6)]}) for load, size in CANTILEVER[level]}
-    return plan
+    return plan | tools.module(CASE, "strip").plan(level) | tools.module(CASE, "hole").plan(level)
 
 
 def evaluate(lab):
     """All scenes at the sizes of the level; of those whose run fails the failure is the result."""
     plan = plan_of(lab.level)
     words = {"membrane": "nu {}, cells of {} m, {} increments", "cantilever": "load {}, cells of {} m",
-             "footing": "cells of {} m, {} increments"}
+             "footing": "cells of {} m, {} increments", "hole": "cells of {} m, {}, {}",
+             **dict.fromkeys(("surcharge", "weight"), "cells of {} m, {} increments, phi {}, {}")}
     plain = {2: "cells of {} m", 3: "cells of {} m, {}"}
-    groups = {key: Group(lab, key[0], words.get(key[0], plain.get(len(key))).format(*key[1:]), settings)
+    groups = {key: Group(lab, key[0], words.get(key[0], plain.get(len(key))).format(*key[1:]).removesuffix(", "), settings)
               for key, (_, settings) in plan.items()}
     results = []
     for key, group in groups.items():
