@@ -326,12 +326,12 @@ template <int D>
 void HistoryWriter<D>::add_points(const RunView<D>& view, std::vector<Real>& row)
 {
   const TrackedIds followed(state_.followed);
-  struct Found {
+  struct FollowedParticle {
     std::size_t body = 0;
     std::vector<Real> values;
   };
   const bool flows = view.problem.flow.any();
-  std::vector<Found> here(followed.size());  // of each id
+  std::vector<FollowedParticle> here(followed.size());  // of each id
   if (!followed.empty())
     parallel_for_uneven(static_cast<Index>(view.order.keys()), [&](Index key) {
       for_each_particle(view, static_cast<std::size_t>(key), [&](const auto& p) {
@@ -345,7 +345,7 @@ void HistoryWriter<D>::add_points(const RunView<D>& view, std::vector<Real>& row
       });
     });
   for (std::size_t k = 0; k < spec_.points.size(); ++k) {
-    const Found& found = here[*followed.place(state_.followed[k])];
+    const FollowedParticle& found = here[*followed.place(state_.followed[k])];
     const std::string& body = spec_.points[k].body;
     const bool is_there = body.empty() || view.state.bodies[found.body].name == body;
     std::vector<Real> point(csv_columns(point_columns(), "", D).size() + (flows ? csv_columns(point_water_columns(), "", D).size() : 0),

@@ -45,14 +45,11 @@ class GradientJumps {
       f(one.cell, (D + 1) * one.stiffness / share_of(one.cell));
   }
 
-  /// Adds -dW/du [N] to the forces of the nodes.
-  void add_forces(const Mesh<D>& mesh, const std::vector<Vec<D>>& u, std::vector<Vec<D>>& force)
+  /// Finds the gradients of displacements [m] of the nodes.
+  void find_gradients(const Mesh<D>& mesh, const std::vector<Vec<D>>& u)
   {
     mean_.assign(volume_.size(), Mat<D>::Zero());
-    rest_.assign(volume_.size(), Mat<D>::Zero());
     gradient_.clear();
-    const auto is_filled = [&](Index n) { return volume_[to_size(n)] > 0; };
-    const auto share = [&](Index c, Index n) { return filled_[to_size(c)] / volume_[to_size(n)]; };
     for (const Cell& one : cells_) {
       Mat<D> gradient = Mat<D>::Zero();
       for (std::size_t a = 0; a <= D; ++a)
@@ -62,16 +59,44 @@ class GradientJumps {
         if (is_filled(n))
           mean_[to_size(n)] += share(one.cell, n) * gradient;
     }
+  }
+  /// The mean of these that the particles of a filled cell see.
+  Mat<D> seen_in(const Mesh<D>& mesh, Index cell) const
+  {
+    Mat<D> sum = Mat<D>::Zero();
+    for (const Index n : mesh.cell(cell))
+      sum += mean_[to_size(n)] / (D + 1);
+    return sum;
+  }
+
+  /// Adds -dW/du [N] of these displacements to the forces of the nodes.  `left` is by cell the share of its stiffness that the material has
+  /// left where it yields, found for filled cells; empty ones have the mean of those around.
+  void add_forces(const Mesh<D>& mesh, const std::vector<Real>& left, std::vector<Vec<D>>& force)
+  {
+    rest_.assign(volume_.size(), Mat<D>::Zero());
+    left_.assign(volume_.size(), 0);
+    for (const Cell& one : cells_)
+      for (const Index n : mesh.cell(one.cell))
+        if (is_filled(n))
+          left_[to_size(n)] += share(one.cell, n) * left[to_size(one.cell)];
+    stiffness_.clear();
+    for (const Cell& one : cells_) {
+      Real sum = 0, nodes = 0;
+      for (const Index n : mesh.cell(one.cell))
+        if (is_filled(n))
+          sum += left_[to_size(n)], ++nodes;
+      stiffness_.push_back(one.stiffness * sum / nodes);
+    }
     for (std::size_t k = 0; k < cells_.size(); ++k)
       for (const Index n : mesh.cell(cells_[k].cell))
         if (is_filled(n))
-          rest_[to_size(n)] += cells_[k].stiffness * (gradient_[k] - mean_[to_size(n)]);
+          rest_[to_size(n)] += stiffness_[k] * (gradient_[k] - mean_[to_size(n)]);
     for (std::size_t k = 0; k < cells_.size(); ++k) {
       const Index c = cells_[k].cell;
       Mat<D> stress = Mat<D>::Zero();
       for (const Index n : mesh.cell(c))
         if (is_filled(n))
-          stress += cells_[k].stiffness * (gradient_[k] - mean_[to_size(n)]) - share(c, n) * rest_[to_size(n)];
+          stress += stiffness_[k] * (gradient_[k] - mean_[to_size(n)]) - share(c, n) * rest_[to_size(n)];
       for (std::size_t a = 0; a <= D; ++a)
         force[to_size(mesh.cell(c)[a])] -= stress * mesh.gradients(c)[a];
     }
@@ -79,14 +104,18 @@ class GradientJumps {
 
  private:
   Real share_of(Index c) const noexcept { return filled_[to_size(c)] > 0 ? 1 : 0.1; }
+  bool is_filled(Index n) const noexcept { return volume_[to_size(n)] > 0; }
+  Real share(Index c, Index n) const noexcept { return filled_[to_size(c)] / volume_[to_size(n)]; }
 
   struct Cell {
     Index cell;
     Real stiffness;  ///< volume times shear modulus, of each node [N m]
   };
   std::vector<Cell> cells_;
-  std::vector<Real> filled_;  ///< by cell: filled volume
-  std::vector<Real> volume_;  ///< by node: that of the cells around it
+  std::vector<Real> filled_;     ///< by cell: filled volume
+  std::vector<Real> volume_;     ///< by node: that of the cells around it
+  std::vector<Real> left_;       ///< by node: share of the stiffness
+  std::vector<Real> stiffness_;  ///< of `cells_`, that of these shares
   std::vector<Mat<D>> mean_, rest_, gradient_;
 };
 

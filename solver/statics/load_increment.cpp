@@ -13,6 +13,8 @@ namespace talus {
 /// Of the shear stiffness, that of displacements that averaged gradients do not see.  With less they alternate, with more it carries a part
 /// of a limit load (docs/theory/statics.md, benchmarks/equilibrium).
 constexpr Real stiffness_of_jumps = 0.1;
+/// Of this, what it has at least where the material yields.
+constexpr Real least_left = 0.25;
 
 template <int D>
 LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt) : m_(m), dt_(dt), time_(m.state.clock.time)
@@ -64,11 +66,12 @@ void LoadIncrement<D>::set_stiffness()
   const Problem<D>& problem = m_.problem;
   elastic_ = ElasticStiffness<D>(problem.mesh, m_.state);
   std::vector<Real> filled = elastic_.filled(), shear = elastic_.shear();
+  shear_ = shear;
   if (!problem.subdomain.alone()) {
-    HaloExchange cells = copies_of_cells(*problem.ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
+    cells_ = copies_of_cells(*problem.ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
     for (std::vector<Real>* const values : {&filled, &shear}) {
-      cells.send(*values, Numbers{});
-      cells.take(*values, Numbers{});
+      cells_.send(*values, Numbers{});
+      cells_.take(*values, Numbers{});
     }
   }
   for (Real& one : shear)
@@ -81,17 +84,65 @@ void LoadIncrement<D>::set_stiffness()
   stiffness_ = elastic_.of_nodes(problem, unknowns_);
 }
 
-/// The forces of the displacements that averaged gradients do not see, at nodes with a motion of their own.
+/// The displacements of the nodes, and their gradients.
 template <int D>
-void LoadIncrement<D>::find_jump_forces()
+void LoadIncrement<D>::find_jumps()
 {
   u_.assign(to_size(m_.problem.mesh.n_nodes()), Vec<D>::Zero());
   nodes().in_use.for_each([&](Index n) { u_[to_size(n)] = dt_ * nodes().motion[to_size(n)].v; });
   unknowns_.send(u_);
+  jumps_.find_gradients(m_.problem.mesh, u_);
+}
+
+/// Adds volume times stress of the particles in strips, by the cells in which a trial finds them.
+template <int D>
+void LoadIncrement<D>::add_stress(std::vector<Sym3>& of_cell) const
+{
+  const ParticleStrips<D>& strips = *m_.work.strips;
+  for (std::size_t key = 0; key < strips.keys(); ++key)
+    for (std::size_t s = 0; s < strips.strips(key).size(); ++s) {
+      const Strip& strip = strips.strips(key)[s];
+      const StripColumns<D> columns = strips.columns(strip);
+      std::size_t i = 0;
+      for (Index k = 0; k < strip_cells; ++k)
+        for (Index left = strip.count[to_size(k)]; left > 0; --left, ++i)
+          of_cell[to_size(strips.first_cell(key, static_cast<Index>(s)) + k)] += columns.volume.of(i) * columns.stress.of(i);
+    }
+}
+
+/// The forces of the displacements that averaged gradients do not see, at nodes with a motion of their own.  Their stiffness is that which
+/// the material has left in the trial, |change of the deviatoric stress| / (2 mu |deviatoric strain|): what yields is not held by it.
+template <int D>
+void LoadIncrement<D>::find_jump_forces()
+{
+  const Mesh<D>& mesh = m_.problem.mesh;
+  std::vector<Sym3> stress(to_size(mesh.n_cells()), Sym3::Zero());
+  add_stress(stress);
+  const auto size_of_deviator = [](Sym3 of) {
+    of.template head<3>().array() -= of.template head<3>().sum() / 3;
+    return std::sqrt(of.template head<3>().squaredNorm() + 2 * of.template tail<3>().squaredNorm());
+  };
+  left_.assign(stress.size(), 1);
+  for (Index c = 0; c < mesh.n_cells(); ++c) {
+    const Real shear = shear_[to_size(c)];
+    if (!(shear > 0))
+      continue;
+    Mat3 gradient = Mat3::Zero();
+    gradient.template topLeftCorner<D, D>() = jumps_.seen_in(mesh, c);
+    const Mat3 strain = (gradient + gradient.transpose()) / 2;
+    const Real elastic = 2 * shear * (strain - strain.trace() / 3 * Mat3::Identity()).norm();
+    const Real found = size_of_deviator(stress[to_size(c)] - stress_[to_size(c)]);
+    if (2 * found < elastic)  // means over cells differ, also where it is elastic
+      left_[to_size(c)] = std::max(2 * found / elastic, least_left);
+  }
+  if (!m_.problem.subdomain.alone()) {
+    cells_.send(left_, Numbers{});
+    cells_.take(left_, Numbers{});
+  }
   jump_force_.assign(u_.size(), Vec<D>::Zero());
-  jumps_.add_forces(m_.problem.mesh, u_, jump_force_);
+  jumps_.add_forces(mesh, left_, jump_force_);
   m_.work.fields.front().small_mass_nodes.give(
-      m_.problem.mesh, m_.problem.own, [](Index, const Vec<D>& force) { return force; }, jump_force_);
+      mesh, m_.problem.own, [](Index, const Vec<D>& force) { return force; }, jump_force_);
 }
 
 /// Which changes of displacement the conditions leave free, as they were in the last trial.
@@ -162,7 +213,7 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   if (then == Then::stay)
     record_work(x);
   else if (then == Then::forces)
-    find_jump_forces();
+    find_jumps();
   m_.transfer->send_motion(m_);
   clear_particle_sums(m_);
   find_renewed_bodies(m_);
@@ -170,15 +221,21 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   m_.state.boundary = before_.boundary;  // without the impulses of masses, which have no inertia here
   work.sums.beyond_nodes.clear();
   work.errors.take(m_.problem.ranks->min(work.errors.word()));
-  if (then == Then::locate)
+  if (then == Then::locate) {
     work.errors.clear();
+    stress_.assign(to_size(m_.problem.mesh.n_cells()), Sym3::Zero());
+    add_stress(stress_);
+  }
   if (then != Then::forces)
     return true;
   if (work.errors.worst())
     return give_up();
   m_.state.clock.time += dt_;
   work.sums.on_mesh.clear();
-  return find_forces(ActiveNodes::as_before) || give_up();
+  if (!find_forces(ActiveNodes::as_before))
+    return give_up();
+  find_jump_forces();
+  return true;
 }
 
 template <int D>

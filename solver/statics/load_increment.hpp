@@ -38,6 +38,8 @@ class LoadIncrement {
   void restore();
   bool find_forces(ActiveNodes active);
   void set_stiffness();
+  void find_jumps();
+  void add_stress(std::vector<Sym3>& of_cell) const;
   void find_jump_forces();
   void set_constraints();
   void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
@@ -74,6 +76,11 @@ class LoadIncrement {
   std::vector<Vec<D>> reaction_, weight_;  ///< in the last trial [N]
   // By node.
   std::vector<Vec<D>> u_, jump_force_;  ///< displacements of the last trial [m], and the forces of their jumps [N]
+  // By cell, of its particles on this rank: sums of volume times shear modulus and, at the beginning, times stress [N m]; and which share of
+  // their shear stiffness is left in the last trial.
+  std::vector<Real> shear_, left_;
+  std::vector<Sym3> stress_;
+  HaloExchange cells_;
   std::int64_t evaluations_ = 0;
 };
 

@@ -25,7 +25,8 @@ struct Filled {
     std::vector<Vec<D>> u, force(to_size(mesh.n_nodes()), Vec<D>::Zero());
     for (Index n = 0; n < mesh.n_nodes(); ++n)
       u.push_back(displacement(n));
-    jumps.add_forces(mesh, u, force);
+    jumps.find_gradients(mesh, u);
+    jumps.add_forces(mesh, std::vector<Real>(to_size(mesh.n_cells()), left), force);
     energy = 0;
     for (std::size_t n = 0; n < u.size(); ++n)
       energy -= u[n].dot(force[n]) / 2;
@@ -33,7 +34,7 @@ struct Filled {
   }
   Mesh<D> mesh;
   GradientJumps<D> jumps;
-  Real energy = 0;
+  Real energy = 0, left = 1;
 };
 
 template <int D>
@@ -70,6 +71,18 @@ TEST(GradientJumps, LinearFieldsHaveNone)
 {
   expect_none_for_linear_fields<2>();
   expect_none_for_linear_fields<3>();
+}
+
+TEST(GradientJumps, TheirStiffnessIsTheShareThatIsLeft)
+{
+  Filled<2> filled = irregular<2>();
+  const auto bent = [&](Index n) { return Vec<2>(filled.mesh.node(n)[0] * filled.mesh.node(n)[1], 0); };
+  filled.forces(bent);
+  const Real whole = filled.energy;
+  filled.left = 0.25;
+  filled.forces(bent);
+  EXPECT_GT(whole, 0);
+  EXPECT_NEAR(filled.energy, whole / 4, 1e-12 * whole);
 }
 
 TEST(GradientJumps, OthersHaveEnergyAndForcesThatCancel)
