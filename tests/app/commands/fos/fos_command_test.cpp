@@ -59,11 +59,11 @@ TEST(FosSearch, WhatIsSmallBesideTheSettlementIsNoGrowth)
 
 TEST(FosSearch, MeasuresThatContradictEachOtherAreUnclear)
 {
-  EXPECT_EQ(judge({.growth = 0.2, .liveliness = 1e-5}, {}), Verdict::unclear);
-  EXPECT_EQ(judge({.growth = 0.05, .liveliness = 1e-2}, {}), Verdict::unclear);
-  EXPECT_EQ(judge({.growth = 0.019, .liveliness = 1e-2}, {}), Verdict::holds) << "a fifth of the limit is clear";
-  EXPECT_EQ(judge({.growth = 0.51, .liveliness = 1e-5}, {}), Verdict::fails);
-  EXPECT_EQ(judge({.growth = std::nan(""), .liveliness = 1}, {}), Verdict::fails);
+  EXPECT_EQ(judge({.growth = 0.2, .liveliness = 1e-5, .steadiness = {}}, {}), Verdict::unclear);
+  EXPECT_EQ(judge({.growth = 0.05, .liveliness = 1e-2, .steadiness = {}}, {}), Verdict::unclear);
+  EXPECT_EQ(judge({.growth = 0.019, .liveliness = 1e-2, .steadiness = {}}, {}), Verdict::holds) << "a fifth of the limit is clear";
+  EXPECT_EQ(judge({.growth = 0.51, .liveliness = 1e-5, .steadiness = {}}, {}), Verdict::fails);
+  EXPECT_EQ(judge({.growth = std::nan(""), .liveliness = 1, .steadiness = {}}, {}), Verdict::fails);
   EXPECT_FALSE(motion_of(history_of([](Real t) { return t; }, [](Real t) { return t; }), std::vector<std::string>{"crest"}, bank));
 }
 
