@@ -41,6 +41,11 @@ def trials_of(search, key):
     return [trial["factor"] for trial in ended], [trial[key] for trial in ended]
 
 
+def second_measure(trial):
+    """Its name in words and in fos.json: steadiness of static trials, else what is left of the kinetic energy."""
+    return ("steadiness", "steadiness") if trial["steadiness"] is not None else ("kinetic energy at the end over its peak", "kinetic_over_peak")
+
+
 def draw(figure, started):
     """Displacement over factor of all searches, each beside its reference."""
     names = list(dict.fromkeys(slope["scene"] for _, slope in started.values()))
@@ -71,7 +76,7 @@ def evaluate(lab):
                                             slope["tolerance"] if judged else None, reference, slope["source"], run))
             results += [tools.Result(CASE, f"{text}, F that {word}, {name}", "-", trial[measure] if trial[measure] is not None else float("nan"), "reported",
                                      None, None, "", run)
-                        for text, measure in (("growth", "growth"), ("kinetic energy at the end over its peak", "kinetic_over_peak"))]
+                        for text, measure in (("growth", "growth"), second_measure(trial))]
     lab.figure(CASE, "verification_factor_of_safety", lambda figure: draw(figure, started), size=(8.4, 3.6),
                caption="Displacement over the factor by which the strength is divided (grey: reference and tolerance).")
     return results
