@@ -77,7 +77,9 @@ void StudyCommands::add_fos(CLI::App& app)
   number("--duration", fos_.duration, "of a run [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
   fos->add_option("--damping", fos_.damping, "local damping of a run; default 0.3")->check(number_within(0.0, 0.9));
   number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
-  number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 5e-4");
+  number("--kinetic", fos_.kinetic, "of a run: kinetic energy at the end over its peak, above which it fails; default 5e-4");
+  number("--steadiness", fos_.steadiness,
+         "of a static trial: moved in its last third over the middle third, above which it fails; default 0.5");
   fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');
   fos->add_option("--share", fos_.mass_share, "displacement that this share of the mass does not exceed is looked at; default 0.99")
       ->check(number_within(0.0, 1.0));

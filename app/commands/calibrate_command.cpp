@@ -8,40 +8,15 @@
 #include <vector>
 
 #include "app/commands/python_process.hpp"
-#include "core/error.hpp"
 
 namespace talus {
 
-namespace {
-
-namespace fs = std::filesystem;
-
-/// The folder that contains the Python package talus: given by the environment, installed in PREFIX/share for PREFIX/libexec/talus/talus, or
-/// in the sources of build/<preset>/talus.
-fs::path package_folder(const fs::path& self)
-{
-  const fs::path script = "talus/__main__.py";
-  if (const char* given = std::getenv("TALUS_PACKAGE"); given != nullptr && *given != '\0') {
-    if (!fs::exists(fs::path(given) / script))
-      throw EnvironmentError(fmt::format("TALUS_PACKAGE is {}, where there is no {}", given, script.string()));
-    return given;
-  }
-  const fs::path above = self.parent_path().parent_path().parent_path(), installed = above / "share/talus/python",
-                 source = above / "python";
-  for (const fs::path& folder : {installed, source})
-    if (fs::exists(folder / script))
-      return folder;
-  throw EnvironmentError(
-      fmt::format("the Python package talus is neither in {} nor in {}: set TALUS_PACKAGE to the folder python of the sources",
-                  installed.string(), source.string()));
-}
-
-}  // namespace
-
 void calibrate(const CalibrateOptions& options)
 {
-  const fs::path self = fs::read_symlink("/proc/self/exe");
-  std::string path = package_folder(self).string();
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
+  std::string path =
+      find_scripts(self, {.what = "the Python package talus", .variable = "TALUS_PACKAGE", .file = "talus/__main__.py", .folder = "python"})
+          .string();
   if (const char* before = std::getenv("PYTHONPATH"); before != nullptr && *before != '\0')
     path += fmt::format(":{}", before);
   ::setenv("PYTHONPATH", path.c_str(), 1);

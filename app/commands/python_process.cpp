@@ -5,11 +5,30 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "core/error.hpp"
 
 namespace talus {
+
+namespace fs = std::filesystem;
+
+fs::path find_scripts(const fs::path& self, const PythonScripts& scripts)
+{
+  if (const char* given = std::getenv(scripts.variable.c_str()); given != nullptr && *given != '\0') {
+    if (!fs::exists(fs::path(given) / scripts.file))
+      throw EnvironmentError(fmt::format("{} is {}, where there is no {}", scripts.variable, given, scripts.file));
+    return given;
+  }
+  const fs::path above = self.parent_path().parent_path().parent_path(), installed = above / "share/talus" / scripts.folder,
+                 source = above / scripts.folder;
+  for (const fs::path& candidate : {installed, source})
+    if (fs::exists(candidate / scripts.file))
+      return candidate;
+  throw EnvironmentError(fmt::format("{} is neither in {} nor in {}: set {} to the folder {} of the sources", scripts.what,
+                                     installed.string(), source.string(), scripts.variable, scripts.folder));
+}
 
 void become_python(const std::vector<std::string>& words)
 {

@@ -28,6 +28,7 @@ void write_fos(const std::filesystem::path& file, const FosRecord& record)
   json["bodies"] = record.bodies;
   json["criterion"] = {{"growth", record.growth_limit},
                        {"kinetic_over_peak", record.liveliness_limit},
+                       {"steadiness", record.steadiness_limit},
                        {"settlement [m]", record.settlement},
                        {"height [m]", record.height}};
   json["trials"] = FosJson::array();

@@ -21,7 +21,7 @@ struct FosRecord {
   std::string scene, commit;
   std::optional<Real> factor, low, high;  ///< nothing while the search continues
   std::vector<Real> out_of_order;
-  Real width{}, growth_limit{}, liveliness_limit{};
+  Real width{}, growth_limit{}, liveliness_limit{}, steadiness_limit{};
   Real settlement{}, height{};  ///< m
   std::vector<std::string> bodies;
   std::vector<FosTrialRecord> trials;

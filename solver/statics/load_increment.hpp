@@ -33,7 +33,7 @@ class LoadIncrement {
   std::optional<std::string> solve(NonlinearSolver& solver, const EquilibriumOptions& options);
 
  private:
-  enum class Then : std::uint8_t { forces, stay, locate };  ///< locate: stay, for the cells of the particles alone
+  enum class Then : std::uint8_t { forces, stay, locate };  ///< locate: stay, for the cells of the particles and their stress
 
   void restore();
   bool find_forces(ActiveNodes active);

@@ -10,7 +10,6 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
@@ -24,25 +23,7 @@ import talus  # noqa: E402
 from talus import __main__ as commands  # noqa: E402
 from talus.calibration import evaluation, observations, read_specification, results  # noqa: E402
 from talus.calibration.files import only_writer, write_whole  # noqa: E402
-
-
-class InAFolder(unittest.TestCase):
-    program = ""
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = Path(scratch.name)
-        before = os.getcwd()
-        os.chdir(self.folder)
-        self.addCleanup(os.chdir, before)
-        environment = mock.patch.dict(os.environ, {"TALUS": self.program})
-        environment.start()
-        self.addCleanup(environment.stop)
-
-    def write(self, name, text):
-        (self.folder / name).write_text(text, encoding="utf-8")
-        return self.folder / name
+from scratch import InAFolder  # noqa: E402
 
 
 SCENE = """\

@@ -11,7 +11,6 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 from pathlib import Path
@@ -25,6 +24,7 @@ sys.path.insert(0, str(ROOT / "python"))
 import talus  # noqa: E402
 from talus.program import messages_of  # noqa: E402
 from talus.running import default_folder  # noqa: E402
+from scratch import InAFolder  # noqa: E402
 
 SCENE = {
     "title": "A falling block",
@@ -39,22 +39,7 @@ SCENE = {
 FREE_FALL = 9.81 * 0.05  # m/s, at the end
 
 
-class OfTheProgram(unittest.TestCase):
-    program = ""
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = Path(scratch.name)
-        before = os.getcwd()
-        os.chdir(self.folder)
-        self.addCleanup(os.chdir, before)
-        environment = mock.patch.dict(os.environ, {"TALUS": self.program})
-        environment.start()
-        self.addCleanup(environment.stop)
-
-
-class Runs(OfTheProgram):
+class Runs(InAFolder):
     def speed_at_the_end(self, run):
         history = run.history
         return -history["momentum_y"][-1] / history["mass"][-1]
@@ -188,7 +173,7 @@ class Runs(OfTheProgram):
         self.assertEqual(talus.run(scene, out="somewhere/else").status, "done")
 
 
-class FindsTheProgram(OfTheProgram):
+class FindsTheProgram(InAFolder):
     def test_the_variable_comes_before_the_path_and_the_path_before_the_repository(self):
         places = []
         for name in ("variable", "path"):
@@ -264,5 +249,5 @@ YamlOfToday.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(true|
 
 
 if __name__ == "__main__":
-    OfTheProgram.program = str(Path(sys.argv.pop(1)).absolute())
+    InAFolder.program = str(Path(sys.argv.pop(1)).absolute())
     unittest.main()

@@ -84,8 +84,9 @@ class FosSearch {
                      .high = high,
                      .out_of_order = out_of_order,
                      .width = options_.range.width,
-                     .growth_limit = options_.criterion.growth,
-                     .liveliness_limit = options_.criterion.liveliness,
+                     .growth_limit = plan_.criterion.growth,
+                     .liveliness_limit = plan_.criterion.liveliness,
+                     .steadiness_limit = plan_.criterion.steadiness,
                      .settlement = plan_.before.settlement(),
                      .height = plan_.before.height,
                      .bodies = plan_.bodies,
@@ -243,10 +244,10 @@ class FosSearch {
       trial.motion = motion_of(read_history(planned.run.folder / "history.csv"), plan_.columns, plan_.before);
       if (!trial.motion)
         return false;
-      trial.verdict = judge(*trial.motion, options_.criterion);
+      trial.verdict = judge(*trial.motion, plan_.criterion);
       if (trial.verdict == Verdict::unclear && (is_last || plan_.quick)) {
         trial.by_growth_alone = true;
-        trial.verdict = trial.motion->growth > options_.criterion.growth ? Verdict::fails : Verdict::holds;
+        trial.verdict = trial.motion->growth > plan_.criterion.growth ? Verdict::fails : Verdict::holds;
       }
     }
     if (trial.verdict == Verdict::unclear)
@@ -315,13 +316,13 @@ class FosSearch {
   std::vector<Planned> made_;
 };
 
-std::string criterion_in_words(const FosOptions& options, const FosPlan& plan)
+std::string criterion_in_words(const FosPlan& plan)
 {
   if (plan.trials == TrialKind::equilibrium)
     return fmt::format("{} equilibria each; fails: growth above {} and steadiness above {}, or no equilibrium", plan.duration,
-                       options.criterion.growth, options.criterion.steadiness);
+                       plan.criterion.growth, plan.criterion.steadiness);
   return fmt::format("trials of {} s, {}; fails: growth above {} and kinetic energy above {} of its peak", plan.duration,
-                     plan.stage.substr(plan.stage.find("damping")), options.criterion.growth, options.criterion.liveliness);
+                     plan.stage.substr(plan.stage.find("damping")), plan.criterion.growth, plan.criterion.liveliness);
 }
 
 }  // namespace
@@ -340,7 +341,7 @@ void find_fos(const FosOptions& options)
   fs::create_directories(plan.folder, said_by_the_lock);
   const FolderLock lock(plan.folder);
   if (!options.quiet)
-    fmt::print("{}: strength of {} divided; {}\n", plan.scene.string(), fmt::join(plan.bodies, ", "), criterion_in_words(options, plan));
+    fmt::print("{}: strength of {} divided; {}\n", plan.scene.string(), fmt::join(plan.bodies, ", "), criterion_in_words(plan));
   FosSearch search(options, plan);
   search();
   search.write_files();
@@ -354,7 +355,7 @@ void find_fos(const FosOptions& options)
   fmt::print("table in {}\n", (plan.folder / "fos.csv").string());
   if (options.pictures)
     try {
-      draw_fos(plan, options.criterion, search.trials(), search.bracket());
+      draw_fos(plan, search.trials(), search.bracket());
     } catch (const Error& e) {
       fmt::print(stderr, "warning: not drawn: {}\n", e.what());
     }

@@ -28,7 +28,7 @@ void draw_curve(const FosPlan& plan, const Bracket& bracket, const std::string& 
 
 }  // namespace
 
-void draw_fos(const FosPlan& plan, const FosCriterion& criterion, std::span<const FosTrial> trials, const Bracket& bracket)
+void draw_fos(const FosPlan& plan, std::span<const FosTrial> trials, const Bracket& bracket)
 {
   std::string table = "factor,displacement [m],growth [-]\n";
   const FosTrial* failing = nullptr;
@@ -41,7 +41,7 @@ void draw_fos(const FosPlan& plan, const FosCriterion& criterion, std::span<cons
   }
   write_whole(plan.folder / "fos_curve.csv", table);
   draw_curve(plan, bracket, "displacement [m]", "fos.png", {"--log"});
-  draw_curve(plan, bracket, "growth [-]", "fos_growth.png", {"--level", "limit", fmt::format("{}", criterion.growth)});
+  draw_curve(plan, bracket, "growth [-]", "fos_growth.png", {"--level", "limit", fmt::format("{}", plan.criterion.growth)});
   if (failing == nullptr)
     return;
   const fs::path picture = plan.folder / "mechanism.png";

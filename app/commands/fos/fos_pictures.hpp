@@ -7,6 +7,6 @@
 namespace talus {
 
 /// Draws displacement and its growth over the factor, and the bodies at the lowest factor that fails.  Throws Error.
-void draw_fos(const FosPlan& plan, const FosCriterion& criterion, std::span<const FosTrial> trials, const Bracket& bracket);
+void draw_fos(const FosPlan& plan, std::span<const FosTrial> trials, const Bracket& bracket);
 
 }  // namespace talus

@@ -89,18 +89,23 @@ void choose_bodies(const FosOptions& options, Index last, FosPlan& plan)
 /// Selects what a trial is: by default what found the state at rest.
 void choose_trials(const FosOptions& options, const StageSpec& rest, FosPlan& plan)
 {
+  plan.criterion = options.criterion;
+  plan.criterion.liveliness = options.kinetic.value_or(plan.criterion.liveliness);
+  plan.criterion.steadiness = options.steadiness.value_or(plan.criterion.steadiness);
   plan.trials = options.trials.value_or(is_solved(rest) ? TrialKind::equilibrium : TrialKind::run);
   if (plan.trials == TrialKind::equilibrium) {
-    if (options.duration || options.damping)
-      throw Error("--duration and --damping belong to trials that are runs (--trials run); those of static trials are --increments");
+    if (options.duration || options.damping || options.kinetic)
+      throw Error(
+          "--duration, --damping and --kinetic belong to trials that are runs (--trials run); static trials have --increments and "
+          "--steadiness");
     const int increments = options.increments.value_or(increments_of_trial);
     plan.duration = increments;
     plan.stage = fmt::format("type: static, increments: {}, grow: false, residual: {}, iterations: {}, cuts: 0, unbalanced: 1", increments,
                              residual_of_trial, iterations_of_trial);
     return;
   }
-  if (options.increments)
-    throw Error("--increments belongs to trials that are solved for equilibrium (--trials static); that of runs is --duration");
+  if (options.increments || options.steadiness)
+    throw Error("--increments and --steadiness belong to static trials (--trials static); runs have --duration and --kinetic");
   if (!(plan.before.gravity > 0) && !options.duration)
     throw Error("--duration is needed where there is no gravity: how long a trial lasts follows from it");
   plan.duration = options.duration.value_or(usual_duration(plan.before));

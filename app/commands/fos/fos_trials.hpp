@@ -21,6 +21,7 @@ struct FosPlan {
   bool keeps_strain = false;           ///< whether laws of these bodies store plastic strain
   AtRest before;
   TrialKind trials = TrialKind::run;
+  FosCriterion criterion;
   Real duration = 0;  ///< of a trial [s], in equilibria one for each increment
   std::string stage;  ///< of a trial, without its duration
 };

@@ -203,7 +203,7 @@ def _read_history(block: Block, name: str) -> Observation | None:
     if not column:
         for name_of_key in ("file", "time", "value", "deviation"):
             block.take(name_of_key)
-        return None  # what is missing is told
+        return None  # what is missing has been reported
     return _read_curve(block, column if name == "history" else name, "history", column, "time", column)
 
 

@@ -216,9 +216,12 @@ TEST_F(FosProgram, StaticTrialsFindTheFactorThatRunsFind)
   EXPECT_NEAR(std::stod(json.substr(json.find(key) + key.size())), 3.83 * 1e4 / (2000 * 9.81), 0.25);  // runs find 1.875
   EXPECT_THAT(read("out/trial_1.75/summary.json"), HasSubstr("type: static, increments: 6"));
   EXPECT_EQ(fos("--duration 2").code, 2);
+  EXPECT_THAT(fos("--kinetic 1.0e-3").err, HasSubstr("belong to trials that are runs"));
+  const Outcome lenient = fos("--from 1.75 --to 2.25 --width 0.5 --growth 10 --steadiness 2 --jobs 2");
+  EXPECT_THAT(lenient.out, HasSubstr("2.25  holds")) << "neither limit is reached";
   EXPECT_EQ(fos("--trials damped").code, 2);
   write("bank.yaml", bank_scene(at_rest));
-  EXPECT_THAT(fos("--increments 4").err, HasSubstr("--increments belongs to trials that are solved for equilibrium"));
+  EXPECT_THAT(fos("--increments 4").err, HasSubstr("--increments and --steadiness belong to static trials"));
 }
 
 TEST_F(FosProgram, SaysWhatKeepsStrengthFromBeingDivided)
