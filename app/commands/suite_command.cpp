@@ -21,9 +21,9 @@ void run_suite(const SuiteOptions& options)
 {
   const fs::path self = fs::read_symlink("/proc/self/exe");
   const std::string script = options.suite + ".py";
-  const fs::path folder =
+  const fs::path suite =
       find_scripts(self, {.what = "the verification suite", .variable = "TALUS_SUITE", .file = script, .folder = "benchmarks"});
-  std::vector<std::string> words{(folder / script).string(), "--program", self.string()};
+  std::vector<std::string> words{(suite / script).string(), "--program", self.string()};
   const auto add_number = [&](const char* option, const std::optional<int>& number) {
     add(option, number ? std::optional(std::to_string(*number)) : std::nullopt, words);
   };
