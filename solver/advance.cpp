@@ -105,7 +105,11 @@ void find_pore_pressures(Model<D>& m, const Kick& kick, Real dt)
   if (!state.stage.flows)
     return;
   const Real end = state.clock.time + dt;
-  const FlowStep<D> step{.end = end, .dt = dt, .kick = kick.length(), .weight = weight_of_water(m.problem, state.stage, end)};
+  const FlowStep<D> step{.end = end,
+                         .dt = dt,
+                         .kick = kick.length(),
+                         .weight = weight_of_water(m.problem, state.stage, end),
+                         .forces = forces_on_water(m.problem, state.stage, end)};
   const FlowModel<D> model{m.problem.mesh, m.problem.flow, m.problem.own, *m.problem.ranks, state.boundary, m.work.fields.front()};
   m.work.flow->advance(model, state.materials, *m.work.strips, step, state.flow, m.work.sums.pore);
 }

@@ -9,6 +9,7 @@ COLUMNS = {0.1: "quick", 0.05: "full", 0.025: "full"}  # m
 HEADS = (1, 2, 4, 5, 6, 8)  # s, of the pressure heads that are compared
 FRONTS = (5, 6)  # s
 SLOPES = {0.25: ("quick", 1.34, 1.5), 0.1667: ("full", 1.34, 1.5), 0.125: ("full", 1.36, 1.44)}  # m: level, range of the search
+RINGS = {0.25: ("quick", 1.4, 1.66), 0.1667: ("full", 1.46, 1.56), 0.125: ("full", 1.5, 1.56)}  # m: level, range of the search
 HEAPS = {0.0125: "quick", 0.00833: "full"}  # m
 PERMEABILITIES = {1e-6: "quick", 1e-3: "full", 1e-1: "quick"}  # m/s
 BODY = "{{body: column, porosity: 0.4, permeability: {:g}}}"  # whose pores stay full
@@ -122,6 +123,20 @@ def factor(data, dry=False, depth=1.0):
     return float(data["cohesion [Pa]"] / (weight * depth * np.sin(angle)) + (1 - water / weight) * friction)
 
 
+def factor_without_ends(ring):
+    """The same of soil without cohesion that shears steadily at constant volume, where sin(phi) takes the place of tan(phi) (Davis 1968)."""
+    sine = np.tan(np.radians(ring["angle [deg]"])) / (1 - ring["unit weight of water [N/m^3]"] / ring["unit weight of the soil [N/m^3]"])
+    return float(np.tan(np.radians(ring["friction angle [deg]"])) / np.tan(np.arcsin(sine)))
+
+
+def ring_error(search, ring):
+    """Error of the pressures of a ring over the largest, root mean square."""
+    frame = tools.talus.Run(search.folder / "at_rest").particles[-1]
+    depth = ring["radius of the surface [m]"] - np.hypot(*frame["position"][:, :2].T)
+    weight = ring["unit weight of water [N/m^3]"] * np.cos(np.radians(ring["angle [deg]"]))
+    return tools.rms(frame["pore_pressure"] / weight - depth)
+
+
 def mobilised(search, data):
     """Strength over shear stress near the base in the middle of the slope at rest, with their means; and the mean depth [m]."""
     frame = tools.talus.Run(search.folder / "at_rest").particles[-1]
@@ -189,6 +204,18 @@ def slope_results(searches, data, weight):
     return results
 
 
+def ring_results(searches, ring):
+    """Pressures and factors of safety of layers that have no ends."""
+    results = []
+    for size, search in searches.items():
+        run = search.trial(search.found["highest_that_holds"])
+        results.append(tools.Result(CASE, f"factor of safety, layer without ends, cells of {size:g} m", "-", search.found["factor_of_safety"], "within",
+                                    ring["slack of the factor"], factor_without_ends(ring), ring["source"], run))
+        results.append(tools.Result(CASE, f"error of the pressure, layer without ends, cells of {size:g} m", "-", ring_error(search, ring), "at most",
+                                    ring["slack of the pressure"], 0.0, ring["source"], run))
+    return results
+
+
 def heap_results(heaps, full, data):
     """Run-outs beside that of dry sand; and pressures and volume where pores stay full."""
     results, slow, fast = [], min(PERMEABILITIES), max(PERMEABILITIES)
@@ -232,7 +259,7 @@ def draw(figure, columns, heaps, data):
 
 
 def evaluate(lab):
-    """Results of the columns in the rain, of the slopes, and of the columns that collapse."""
+    """Results of the columns in the rain, of the slopes, of the layers without ends, and of the columns that collapse."""
     data = tools.reference(CASE)
     weight, slope = data["unit weight [N/m^3]"], {**data["slope"], "unit weight of water [N/m^3]": data["unit weight [N/m^3]"]}
 
@@ -260,7 +287,10 @@ def evaluate(lab):
     for size, (level, low, high) in SLOPES.items():
         if wanted(level):
             slopes[f"cells of {size:g} m"] = search(f"{size}", low, high, {"mesh.size": size}), factor(slope)
-    results = rain_results(columns, sudden, data["rain"], weight) + slope_results(slopes, slope, weight) + heap_results(heaps, full, data["collapse"])
+    rings = {size: lab.fos(f"{CASE}/ring.yaml", f"ring_{size}", {"mesh.size": size}, duration=4, share=0.5, width=0.02, **{"from": low, "to": high})
+             for size, (level, low, high) in RINGS.items() if wanted(level)}
+    results = rain_results(columns, sudden, data["rain"], weight) + slope_results(slopes, slope, weight)
+    results += ring_results(rings, {**data["ring"], "unit weight of water [N/m^3]": weight}) + heap_results(heaps, full, data["collapse"])
     lab.figure(CASE, "verification_seepage", lambda figure: draw(figure, columns, heaps, data), size=(8, 3.6),
                caption="Pressure heads in a column that drains and is rained on (dots: particles, lines: Richards' equation), and deposits of saturated columns.")
     return results

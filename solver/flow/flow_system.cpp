@@ -69,7 +69,7 @@ void FlowSystem<D>::find_rows(const FlowModel<D>& m, const FlowCells<D>& cells, 
         push_[k] += row.biot / n_corners * gradients[a];
         divergence_[k] += row.biot / n_corners * gradients[b];
       }
-      weight_[to_size(n)] += step.dt * row.mobility * step.weight.dot(gradients[a]);
+      weight_[to_size(n)] += step.dt * row.mobility * step.weight_in(c).dot(gradients[a]);
     }
   });
 }

@@ -12,7 +12,11 @@ template <int D>
 struct FlowStep {
   Real end{};                      ///< time of its end [s]
   Real dt{}, kick{};               ///< its length, and the time over which forces act [s]
-  Vec<D> weight = Vec<D>::Zero();  ///< of water [N/m^3]
+  Vec<D> weight = Vec<D>::Zero();  ///< of water, as gravity acts on it [N/m^3]
+  std::vector<Vec<D>> forces{};    ///< of place, on the water in each cell [N/m^3]; empty where a scene has none
+
+  /// What acts on the water in a cell [N/m^3].
+  Vec<D> weight_in(Index cell) const noexcept { return forces.empty() ? weight : Vec<D>(weight + forces[static_cast<std::size_t>(cell)]); }
 };
 /// What a step needs of the run.
 template <int D>

@@ -28,7 +28,7 @@ void FlowSystem<D>::record(const FlowModel<D>& m, const FlowCells<D>& cells, con
       return one;
     Real lifted = 0;  // dt k/gamma w^2
     for (const Index c : m.mesh.cells_of_node()[u])
-      lifted += step.dt * cells[c].mobility * step.weight.squaredNorm() / (D + 1);
+      lifted += step.dt * cells[c].mobility * step.weight_in(c).squaredNorm() / (D + 1);
     auto k = to_size(m.mesh.ring_of_node().begin[to_size(u)]);
     Real darcy = 0;
     one.squeezed = squeezed_[to_size(u)];

@@ -61,6 +61,24 @@ TEST(PorePressure, OfWaterAtRestStays)
   rests_below_its_level<3>();
 }
 
+TEST(PorePressure, FeelsForcesOfPlaceAsGravity)
+{
+  auto m = saturated<2>(unit_box<2>(8, 0.2), pores(1e-2, 1e8), everywhere<2>);
+  hold_everything(m);
+  m.problem.loads.of_place.push_back({.acceleration = [](std::span<const Vec<2>> places, Real, std::span<Vec<2>> accelerations) {
+    for (std::size_t k = 0; k < places.size(); ++k)
+      accelerations[k] = {0, -9.81};
+  }});
+  m.problem.flow.heads.push_back({"y_max", nodes_on(m.problem.mesh, "y_max"), true, {}});
+  const auto at_rest = [](const Vec<2>& x) { return weight * (1 - x[1]); };
+  begin<2>(m, at_rest, -weight * Vec<2>::Unit(1));
+  make_steps(m, 20, 1e-3);
+  EXPECT_LT(rms(m, at_rest), 1e-8 * weight);
+  EXPECT_NEAR(m.state.flow.drained, 0, 1e-14);
+  EXPECT_NEAR(m.state.flow.seepage, 0, 1e-9);
+  EXPECT_LT(seepage_velocity(m.problem, m.state, 5).norm(), 1e-10);
+}
+
 TEST(PorePressure, FallsAlongTheFlowAsDarcySays)
 {
   constexpr Real rate = 1e-4;
