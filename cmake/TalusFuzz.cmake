@@ -7,7 +7,7 @@ target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
               ONLY accuracy array_ atomic_file hdf5 cell_count csv document field_reader gdal_plugin gmsh_plugin gmsh_read load_mesh
                    http_request manifest map_crs memory mesh_groups plugin msh_ page_block point_file progress_json raster_file reader record_file
-                   result_files scalars scene shape signals stl_file study summary_json surface_file terrain_ text_file traps value_type vtk xml_tags
+                   result_files scalars scene shape signals stl_file summary_json surface_file terrain_ text_file traps value_type vtk xml_tags
               EXCLUDE scene_schema
               LINKS talus_mesh talus_fuzz_materials
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5 ZLIB::ZLIB)

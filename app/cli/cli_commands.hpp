@@ -15,7 +15,7 @@
 #include "app/commands/report/report.hpp"
 #include "app/commands/run_command.hpp"
 #include "app/commands/suite_command.hpp"
-#include "app/commands/sweep/sweep_command.hpp"
+#include "app/commands/sweep_command.hpp"
 #include "app/commands/watch/watch_command.hpp"
 
 namespace talus {
@@ -36,6 +36,7 @@ class SceneCommands {
   RunOptions run_;
   std::filesystem::path check_scene_;
   std::vector<std::string> check_set_;
+  std::optional<std::filesystem::path> variants_;
   DriveOptions drive_;
   MeshOptions mesh_;
 };

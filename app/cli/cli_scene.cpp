@@ -50,8 +50,16 @@ void SceneCommands::add_check(CLI::App& app)
 {
   CLI::App* check = app.add_subcommand("check", "find everything wrong with a scene and its mesh; say what a run would cost");
   check->add_option("scene", check_scene_, "scene file (.yaml)")->type_name(scene_value)->required();
-  check->add_option("--set", check_set_, set_help);
-  check->callback([this] { check_scene(check_scene_, check_set_); });
+  CLI::Option* set = check->add_option("--set", check_set_, set_help);
+  check->add_option("--variants", variants_, "check each of the variants in this file, and print JSON: for programs that make many runs")
+      ->type_name("*.json")
+      ->excludes(set);
+  check->callback([this] {
+    if (variants_)
+      check_variants(check_scene_, *variants_);
+    else
+      check_scene(check_scene_, check_set_);
+  });
 }
 
 void SceneCommands::add_mesh(CLI::App& app)

@@ -25,22 +25,6 @@ struct Chart {
   std::filesystem::path out;  ///< .png
 };
 
-/// A tornado chart: bars to either side of a line, for the result in two cases of each of several keys.
-struct Tornado {
-  struct Bar {
-    std::string name;
-    Real low, high;
-  };
-  std::vector<Bar> bars;  ///< from top to bottom
-  Real base = 0;          ///< position of the line
-  std::string x, title;   ///< "name [unit]"
-  std::filesystem::path out;
-};
-/// Parses the words of the command line after "tornado".  Throws Error with the reason.
-Tornado parse_tornado(std::span<const std::string> arguments);
-/// Draws and writes the chart.  Errors as for a Chart.
-void draw(const Tornado& tornado);
-
 /// Parses the words of the command line after "chart".  Throws Error with the reason.
 Chart parse_chart(std::span<const std::string> arguments);
 

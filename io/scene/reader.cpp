@@ -367,14 +367,4 @@ PointTest read_point_path(const std::filesystem::path& file, std::span<const std
   return test;
 }
 
-Study read_study(const std::filesystem::path& file)
-{
-  Document document = read_document(file, read_text(file), {});
-  StudySpec spec;
-  FieldReader(document.problems).read(document.root, "", spec);
-  Study study = study_of(file, document.root, spec, document.problems);
-  document.problems.throw_if_any();
-  return study;
-}
-
 }  // namespace talus

@@ -7,7 +7,6 @@
 
 #include "io/scene/point_test.hpp"
 #include "io/scene/scene.hpp"
-#include "io/scene/study.hpp"
 
 namespace talus {
 
@@ -39,8 +38,5 @@ std::string with_values(const std::filesystem::path& file, std::string text, std
 
 /// The file of `talus drive`, read in the same way.
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides = {});
-
-/// The file of `talus sweep`.  Its cases are checked later, when their scenes are read.
-Study read_study(const std::filesystem::path& file);
 
 }  // namespace talus

@@ -2,16 +2,12 @@
 #include "io/document/make_value_type.hpp"
 #include "io/scene/point_test.hpp"
 #include "io/scene/scene.hpp"
-#include "io/scene/study.hpp"
-#include "io/scene/study_samples.hpp"
 #include "materials/interface/law_variant.hpp"
 
 namespace talus {
 
 template const ValueType& value_type<Scene>();
 template const ValueType& value_type<PointTest>();
-template const ValueType& value_type<StudySpec>();
-template const ValueType& value_type<Spread>();
 
 // Those that the manual treats in a way of their own.
 template const ValueType& value_type<AnyLaw>();

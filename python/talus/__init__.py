@@ -12,13 +12,15 @@
     run.plot("displacement", time=2.5)
     run.checkpoints[-1]["particles/velocity"]                 # in double precision, with its digest checked
     talus.calibrate("calibration.yaml", jobs=4).values        # parameters from observations
+    talus.sweep("study.yaml", jobs=4).to_pandas()             # several values of keys, and a table of the results
     talus.drive({"law": "von_mises", ...}, test="uniaxial_strain_rate")
 
 The package is one folder that can be copied.  It needs numpy, h5py to read checkpoints, and lz4 to read particles and meshes
 (Debian: python3-numpy, python3-h5py, python3-lz4); pandas, xarray, matplotlib, PyVista, and for calibrations scipy, PyYAML and contourpy,
 are used where they are installed, and MissingPackage names them where they are not.  Units are SI; a pure number has the unit "-".  Symmetric tensors have six components,
 xx, yy, zz, xy, yz, xz (`tensors` makes matrices of them), others nine, by rows.  Vectors of particle and mesh files have three components
-in two dimensions too.  Only `run`, `resume`, `drive` and `calibrate` write files.
+in two dimensions too.  Only `run`, `resume`, `drive`, `calibrate` and `sweep`
+write files.
 
 Errors in a file are FileErrors with its name: `Damaged`, or `UnknownFormat` for a file of another version.  A missing file is a
 FileNotFoundError; a missing field, column or body is a `Missing` error, which lists the existing ones.  An error of the program is a
@@ -38,13 +40,15 @@ from .rasters import Maps, Raster
 from .running import Progress, check, resume, run
 from .runs import Run, Sweep
 from .runs import open_run as open
+from .run_queue import StoppedRuns
 from .scenes import to_yaml
+from .sweeps import sweep
 from .tables import PURE, Table
 
 __version__ = "0.1.0"  # that of the program (CMakeLists.txt)
 
 __all__ = ["Body", "CHECKPOINT_FORMATS", "Calibration", "Checkpoint", "Comparison", "Damaged", "Difference", "EnvironmentFailure",
            "Estimate", "FileError", "Maps", "MaterialTest", "Mesh", "Message", "Missing", "MissingPackage", "PURE", "Particles", "Progress",
-           "ProgramError", "Raster", "Run", "RunFailed", "SceneError", "Series", "Sweep", "TESTS", "Table", "UnknownFormat", "calibrate",
-           "check", "compare", "drive", "find_program", "manual", "open", "resume", "run", "schema", "tensors", "to_pandas", "to_yaml",
-           "von_mises"]
+           "ProgramError", "Raster", "Run", "RunFailed", "SceneError", "Series", "StoppedRuns", "Sweep", "TESTS", "Table", "UnknownFormat",
+           "calibrate", "check", "compare", "drive", "find_program", "manual", "open", "resume", "run", "schema", "sweep", "tensors",
+           "to_pandas", "to_yaml", "von_mises"]

@@ -1,4 +1,4 @@
-"""The commands of the package: python3 -m talus calibrate SPECIFICATION.  The program calls them for `talus calibrate`."""
+"""The commands of the package, such as python3 -m talus sweep STUDY.  The program calls them for `talus sweep` and `talus calibrate`."""
 from __future__ import annotations
 
 import argparse
@@ -12,6 +12,8 @@ from .calibration import calibrate, default_folder
 from .calibration.evaluation import Stopped
 from .errors import EnvironmentFailure, FileError, MissingPackage, ProgramError, RunFailed, SceneError
 from .program import STOPPED
+from .run_queue import StoppedRuns
+from .sweeps.command import add_sweep
 
 _FAILED, _WRONG, _ENVIRONMENT = 1, 2, 3  # exit codes of the program (app/cli/main.cpp)
 
@@ -21,12 +23,12 @@ def main(words: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(words)
     signal.signal(signal.SIGTERM, _interrupt)
     signal.signal(signal.SIGUSR1, _interrupt)
-    out = options.out if options.out is not None else default_folder(options.specification)
     try:
-        result = calibrate(options.specification, out=out, jobs=options.jobs, threads=options.threads, pictures=options.pictures,
-                           program=options.program, tell=None if options.quiet else _tell)
+        options.run(options)
+    except StoppedRuns as stopped:
+        return _complain(STOPPED, str(stopped))
     except (KeyboardInterrupt, Stopped):
-        return _complain(STOPPED, f"stopped; the same command goes on, with the runs that are done in {out}")
+        return _complain(STOPPED, f"stopped; the same command goes on, with the runs that are done in {options.folder(options)}")
     except SceneError as error:
         return _complain(_WRONG, str(error))
     except RunFailed as error:
@@ -36,30 +38,45 @@ def main(words: Sequence[str] | None = None) -> int:
     except ProgramError as error:  # killed by a signal, for example
         return _complain(_FAILED, str(error))
     except FileNotFoundError as error:
-        if error.filename is not None and Path(error.filename) == options.specification:
-            return _complain(_WRONG, f"there is no file {options.specification}")
+        if error.filename is not None and Path(error.filename) == options.file:
+            return _complain(_WRONG, f"there is no file {options.file}")
         return _complain(_ENVIRONMENT, str(error))
     except (OSError, MissingPackage, FileError) as error:
         return _complain(_ENVIRONMENT, str(error))
-    print(result)
-    print(f"results in {out}: calibration.json, calibration.csv, best.yaml{', calibration.png' if options.pictures else ''}")
     return 0
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser("talus", description="Commands of the Python package talus")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    _add_calibrate(commands)
+    add_sweep(commands, _count)
+    return parser
+
+
+def _add_calibrate(commands: Any) -> None:
     one = commands.add_parser("calibrate", help="find parameters of a scene from observations, with their uncertainty",
                               description="Finds parameters of a scene from observations, with their uncertainty.  Runs that are done in "
                                           "the folder are not repeated: the same command goes on.")
-    one.add_argument("specification", type=Path, help="file (.yaml) that names scene, parameters and observations")
+    one.add_argument("file", metavar="specification", type=Path, help="file (.yaml) that names scene, parameters and observations")
     one.add_argument("--out", type=Path, metavar="DIR", help="folder of runs and results; default runs/<name of the file>")
     one.add_argument("--jobs", type=_count, default=1, metavar="N", help="runs at a time; default 1")
     one.add_argument("--threads", type=_count, metavar="N", help="threads of each; default as for a run, with --jobs the cores over that")
     one.add_argument("--no-pictures", dest="pictures", action="store_false", help="draw nothing")
     one.add_argument("--quiet", action="store_true", help="only the results")
     one.add_argument("--program", type=Path, metavar="PATH", help="the program talus; default as in talus.find_program")
-    return parser
+    one.set_defaults(run=_calibrate, folder=_folder_of_calibration)
+
+
+def _folder_of_calibration(options: argparse.Namespace) -> Path:
+    return options.out if options.out is not None else default_folder(options.file)
+
+
+def _calibrate(options: argparse.Namespace) -> None:
+    out = _folder_of_calibration(options)
+    print(calibrate(options.file, out=out, jobs=options.jobs, threads=options.threads, pictures=options.pictures, program=options.program,
+                    tell=None if options.quiet else _tell))
+    print(f"results in {out}: calibration.json, calibration.csv, best.yaml{', calibration.png' if options.pictures else ''}")
 
 
 def _count(word: str) -> int:

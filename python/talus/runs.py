@@ -4,15 +4,18 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .checkpoints import Checkpoint
 from .errors import Damaged
 from .fields import Mesh, Particles, Series
-from .rasters import Maps
+from .rasters import Maps, Raster
 from .tables import Table
+
+if TYPE_CHECKING:
+    import pandas
 
 BEFORE_THE_END = "the run did not end"  # app/run/summary.hpp
 
@@ -195,8 +198,8 @@ def open_run(folder: str | os.PathLike[str]) -> Run:
 
 
 class Sweep:
-    """The folder of a parameter study (`talus sweep`): `table` has a row for each case; `run(k)` opens the results of case k, as numbered
-    in the column `case`."""
+    """The folder of a parameter study (`talus.sweep`, `talus sweep`): `table` has a row for each case; `run(k)` opens the results of case k, as
+    numbered in the column `case`.  What depends on the kind of study raises FileNotFoundError where it was not written."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
@@ -216,3 +219,28 @@ class Sweep:
     def run(self, case: int) -> Run:
         """The results of a case."""
         return Run(self.folder / f"case_{case:04}")
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table, with the number of the case as index.  Needs pandas."""
+        return self.table.to_pandas("case")
+
+    @property
+    def correlations(self) -> Table:
+        """Spearman's rank correlation of each number with each key, a row for each number; of sampled keys."""
+        return Table(_written(self.folder / "correlation.csv", "correlations (combine: latin or sobol)"))
+
+    def exceedance(self, name: str) -> Table:
+        """The share of cases in which a number, such as "toe" or "max(kinetic)", reaches or exceeds a value; of sampled keys."""
+        return self._of_number("exceedance", name, "combine: latin or sobol")
+
+    def tornado(self, name: str) -> Table:
+        """A number in the low and in the high case of each key, the most important key first."""
+        return self._of_number("tornado", name, "combine: tornado")
+
+    def exceedance_map(self, name: str) -> Raster:
+        """The share of cases in which a map exceeds the value that the study names."""
+        return Raster(_written(self.folder / f"exceedance_{name}.tif", "an exceedance map (exceed)"))
+
+    def _of_number(self, kind: str, name: str, how: str) -> Table:
+        from .sweeps.findings import file_word
+        return Table(_written(self.folder / f"{kind}_{file_word(name)}.csv", f"a table of {name} ({how})"))

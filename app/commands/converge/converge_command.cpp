@@ -7,7 +7,7 @@
 
 #include "app/commands/converge/converge_command.hpp"
 #include "app/commands/converge/converge_numbers.hpp"
-#include "app/commands/sweep/run_queue.hpp"
+#include "app/commands/queue/run_queue.hpp"
 #include "app/observers/results.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/version.hpp"

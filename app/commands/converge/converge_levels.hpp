@@ -1,7 +1,7 @@
 #pragma once
 // The levels of a convergence study: a scene, and the same with larger or smaller cells.
 #include "app/commands/converge/converge_command.hpp"
-#include "app/commands/sweep/planned_run.hpp"
+#include "app/commands/queue/planned_run.hpp"
 #include "io/scene/scene.hpp"
 
 namespace talus {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <map>
 
-#include "app/commands/sweep/collected.hpp"
+#include "app/commands/converge/collected.hpp"
 #include "core/error.hpp"
 #include "core/word_match.hpp"
 

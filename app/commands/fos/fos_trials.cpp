@@ -10,6 +10,7 @@
 #include "app/setup/laws_in_force.hpp"
 #include "app/setup/setup.hpp"
 #include "core/word_match.hpp"
+#include "io/document/document.hpp"
 #include "io/load_mesh.hpp"
 #include "io/scene/reader.hpp"
 #include "materials/interface/law_variant.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 // The runs of a search for a factor of safety: one that finds equilibrium, and trials that start from it with divided strength.
 #include "app/commands/fos/fos_command.hpp"
-#include "app/commands/sweep/planned_run.hpp"
+#include "app/commands/queue/planned_run.hpp"
 #include "io/scene/scene.hpp"
 
 namespace talus {

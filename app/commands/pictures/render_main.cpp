@@ -35,13 +35,6 @@ void draw_chart(std::span<const std::string> words)
   announce(chart.out);
 }
 
-void draw_tornado(std::span<const std::string> words)
-{
-  const auto tornado = render::parse_tornado(words);
-  render::draw(tornado);
-  announce(tornado.out);
-}
-
 void write_surfaces(std::span<const std::string> words)
 {
   std::vector<std::string> problems;
@@ -80,8 +73,6 @@ int main(int argc, char** argv)
     }
     if (!arguments.empty() && arguments.front() == "chart")
       draw_chart(std::span(arguments).subspan(1));
-    else if (!arguments.empty() && arguments.front() == "tornado")
-      draw_tornado(std::span(arguments).subspan(1));
     else if (!arguments.empty() && arguments.front() == "surface")
       write_surfaces(std::span(arguments).subspan(1));
     else if (!arguments.empty() && arguments.front() == "map")

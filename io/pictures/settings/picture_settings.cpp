@@ -317,8 +317,7 @@ std::string usage()
          "Pictures need a display; `talus render` brings one.\n\n" +
          help<Settings>("talus-render") + help<SurfaceSettings>("talus-render surface") + help<MapSettings>("talus-render map") +
          "talus-render chart TABLE.csv --x COLUMN --y COLUMN [--level NAME VALUE]... [--upright NAME VALUE]... [--curve NAME] [--marks] "
-         "[--log] [--title TEXT] --out FILE.png\n"
-         "talus-render tornado --bar NAME LOW HIGH... --base VALUE --x COLUMN [--title TEXT] --out FILE.png\n";
+         "[--log] [--title TEXT] --out FILE.png\n";
 }
 
 }  // namespace talus::render

@@ -49,7 +49,8 @@ def _as_told(message: Message) -> str:
     """An error as the program prints it: place, key and text, the line, and a mark below the column."""
     key = f"{message.key}: " if message.key else ""
     shown = f"\n{message.line:5} | {message.source}\n      | {' ' * (message.column - 1)}^" if message.source else ""
-    return f"{message.file}:{message.line}:{message.column}: error: {key}{message.text}{shown}"
+    place = ":".join(map(str, (message.file, *(number for number in (message.line, message.column) if number))))
+    return f"{place}: error: {key}{message.text}{shown}"
 
 
 class Entry:
@@ -175,7 +176,7 @@ class Block:
         if entry is None:
             return default if default is not None else choices[0]
         if entry.node.id != "scalar" or entry.node.value not in choices:
-            entry.wrong(f"{entry.shown()}{_meant(str(entry.node.value), choices)}")
+            entry.wrong(f"{entry.shown()}{meant(str(entry.node.value), choices)}")
             return choices[0]
         return entry.node.value
 
@@ -206,12 +207,13 @@ class Block:
         for name_node, _ in self.entry.node.value if self.entry.is_mapping else []:
             name = str(name_node.value)
             if name not in self._taken:
-                Entry(name_node, self.entry.key, self.entry.problems).wrong(f'unknown key "{name}"{_meant(name, sorted(self._taken))}')
+                Entry(name_node, self.entry.key, self.entry.problems).wrong(f'unknown key "{name}"{meant(name, sorted(self._taken))}')
 
 
-def _meant(word: str, known: Sequence[str]) -> str:
+def meant(word: str, known: Sequence[str], otherwise: str = "") -> str:
+    """What was probably meant by a wrong word; or the known words, or other text for these."""
     near = difflib.get_close_matches(word, known, 1)
-    return f' — did you mean "{near[0]}"?' if near else f"; known: {', '.join(known)}"
+    return f' — did you mean "{near[0]}"?' if near else f"; known: {otherwise or ', '.join(known)}"
 
 
 def read_yaml(file: Path) -> Entry:
@@ -219,6 +221,10 @@ def read_yaml(file: Path) -> Entry:
     yaml = need("yaml", "reads YAML files")
     problems = Problems(file)
     try:
+        for token in yaml.scan(problems.text, Loader=yaml.SafeLoader):
+            if isinstance(token, (yaml.AnchorToken, yaml.AliasToken, yaml.TagToken)):
+                problems.add(token.start_mark.line + 1, token.start_mark.column + 1, "", "anchors, aliases and tags are not read")
+        problems.raise_any()
         node = yaml.compose(problems.text, Loader=yaml.SafeLoader)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)

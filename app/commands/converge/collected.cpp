@@ -1,4 +1,4 @@
-#include "app/commands/sweep/collected.hpp"
+#include "app/commands/converge/collected.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "app/commands/sweep/run_queue.hpp"
+#include "app/commands/queue/run_queue.hpp"
 
 #include <fmt/format.h>
 

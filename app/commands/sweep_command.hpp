@@ -15,9 +15,8 @@ struct SweepOptions {
   bool list = false;                    ///< run nothing
   bool quick = false, quiet = false, pictures = true;
 };
-/// Runs the cases of a study that are not done yet, each in its own process and folder, and maintains a table of them.  Throws SceneErrors
-/// with all errors of the cases before anything runs; RunError if some failed; Stopped after a signal, or because cases were stopped;
+/// Replaces this process by `sweep` of the Python package talus, which runs this program.  Throws Error if it was started on several ranks,
 /// EnvironmentError.
-void sweep(const SweepOptions& options);
+[[noreturn]] void sweep(const SweepOptions& options);
 
 }  // namespace talus

@@ -1,4 +1,4 @@
-#include "app/commands/sweep/planned_run.hpp"
+#include "app/commands/queue/planned_run.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/commands/sweep/planned_run.hpp"
+#include "app/commands/queue/planned_run.hpp"
 
 namespace talus {
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "app/commands/sweep/sweep_findings.hpp"
 #include "io/terrain/raster_file.hpp"
 #include "tests/app/program.hpp"
 
@@ -161,17 +160,6 @@ TEST_F(SweepProgram, WrongWordsEndWithTwo)
   EXPECT_FALSE(exists("out"));
 }
 
-TEST(SweepFindings, RankCorrelationIsThatOfRanksNotOfValues)
-{
-  const std::vector<Real> x{1, 2, 3, 4, 5}, grows{1, 10, 11, 1000, 1e6}, falls{5, 4, 3, 2, 1}, same(5, 7), mixed{2, 1, 4, 3, 5};
-  EXPECT_NEAR(rank_correlation(x, grows), 1, 1e-15);
-  EXPECT_NEAR(rank_correlation(x, falls), -1, 1e-15);
-  EXPECT_TRUE(std::isnan(rank_correlation(x, same)));
-  EXPECT_NEAR(rank_correlation(x, mixed), 1 - 6 * 4 / (5.0 * 24), 1e-15);  // 1 - 6 sum d^2 / (n (n^2 - 1))
-  EXPECT_NEAR(rank_correlation(std::vector<Real>{1, 1, 2}, std::vector<Real>{1, 2, 3}), std::sqrt(0.75), 1e-15)
-      << "ties share their mean rank";
-}
-
 TEST_F(SweepProgram, SamplesTellHowLikelyAndByWhichKey)
 {
   write_study("  materials[0].youngs_modulus: {low: 1.0e5, high: 4.0e5}\n  time.end: {low: 0.01, high: 0.03}\n",
@@ -212,6 +200,21 @@ TEST_F(SweepProgram, ATornadoPutsTheKeyFirstThatMattersMost)
             "key,low value,high value,at low: simulated_time [s],at high: simulated_time [s],all in the middle: simulated_time [s]\n"
             "time.end,0.01,0.03,0.01,0.03,0.02\nbodies[0].particles_per_cell,3,4,0.02,0.02,0.02\n");
   EXPECT_EQ(rows().size(), 6U);
+}
+
+TEST_F(SweepProgram, GivesAllOptionsToThePackage)
+{
+  std::filesystem::create_directories(folder_ / "talus");
+  write("talus/__init__.py", "");
+  write("talus/__main__.py", "import sys\nprint('|'.join(sys.argv[1:]))\nsys.exit(7)\n");
+  ::setenv("TALUS_PACKAGE", folder_.path().c_str(), 1);
+  const Outcome all = talus("sweep 'a b.yaml' --out c --jobs 2 --threads 3 --launcher '--x -n 1' --list --quick --quiet --no-pictures");
+  const Outcome one = talus("sweep a.yaml --case 4");
+  ::unsetenv("TALUS_PACKAGE");
+  EXPECT_EQ(all.code, 7) << all.err;
+  EXPECT_THAT(all.out, testing::StartsWith("sweep|a b.yaml|--program|/"));
+  EXPECT_THAT(all.out, testing::EndsWith("talus|--out|c|--launcher=--x -n 1|--jobs|2|--threads|3|--list|--quick|--quiet|--no-pictures\n"));
+  EXPECT_THAT(one.out, testing::EndsWith("talus|--case|4\n"));
 }
 
 TEST_F(SweepProgram, TheExampleIsInOrder)
