@@ -51,12 +51,17 @@ void SceneCommands::add_check(CLI::App& app)
   CLI::App* check = app.add_subcommand("check", "find everything wrong with a scene and its mesh; say what a run would cost");
   check->add_option("scene", check_scene_, "scene file (.yaml)")->type_name(scene_value)->required();
   CLI::Option* set = check->add_option("--set", check_set_, set_help);
+  CLI::Option* json = check->add_flag("--json", check_json_, "print what the scene consists of as JSON, for other programs");
+  check->add_flag("--keys", check_keys_, "check the keys alone: make no mesh")->needs(json);
   check->add_option("--variants", variants_, "check each of the variants in this file, and print JSON: for programs that make many runs")
       ->type_name("*.json")
-      ->excludes(set);
+      ->excludes(set)
+      ->excludes(json);
   check->callback([this] {
     if (variants_)
       check_variants(check_scene_, *variants_);
+    else if (check_json_)
+      check_as_json(check_scene_, check_set_, check_keys_);
     else
       check_scene(check_scene_, check_set_);
   });

@@ -12,5 +12,8 @@ void check_scene(const std::filesystem::path& scene, const std::vector<std::stri
 /// Checks the variants of a scene that a file names (io/output/variants_json.hpp), without writing anything, and prints what was found in
 /// each.  Throws Error if the file is damaged.
 void check_variants(const std::filesystem::path& scene, const std::filesystem::path& variants);
+/// Checks the same, and prints what the scene consists of as JSON (io/output/scene_facts_json.hpp).  With `keys_only`, only the keys are
+/// checked: no mesh is made, and no other run is looked at from which the scene starts.
+void check_as_json(const std::filesystem::path& scene, const std::vector<std::string>& set, bool keys_only);
 
 }  // namespace talus

@@ -1,4 +1,4 @@
-"""The commands of the package, such as python3 -m talus sweep STUDY.  The program calls them for `talus sweep` and `talus calibrate`."""
+"""The commands of the package, such as python3 -m talus calibrate SPECIFICATION.  The program calls them for its commands of these names."""
 from __future__ import annotations
 
 import argparse
@@ -10,9 +10,11 @@ from typing import Any
 
 from .calibration import calibrate, default_folder
 from .calibration.evaluation import Stopped
+from .differences.command import add_diff
 from .errors import EnvironmentFailure, FileError, MissingPackage, ProgramError, RunFailed, SceneError
 from .program import STOPPED
 from .run_queue import StoppedRuns
+from .strength_reduction.command import add_fos
 from .sweeps.command import add_sweep
 
 _FAILED, _WRONG, _ENVIRONMENT = 1, 2, 3  # exit codes of the program (app/cli/main.cpp)
@@ -24,11 +26,12 @@ def main(words: Sequence[str] | None = None) -> int:
     signal.signal(signal.SIGTERM, _interrupt)
     signal.signal(signal.SIGUSR1, _interrupt)
     try:
-        options.run(options)
+        return options.run(options)
     except StoppedRuns as stopped:
         return _complain(STOPPED, str(stopped))
     except (KeyboardInterrupt, Stopped):
-        return _complain(STOPPED, f"stopped; the same command goes on, with the runs that are done in {options.folder(options)}")
+        runs = f", with the runs that are done in {options.folder(options)}" if options.folder is not None else ""
+        return _complain(STOPPED, f"stopped; the same command goes on{runs}")
     except SceneError as error:
         return _complain(_WRONG, str(error))
     except RunFailed as error:
@@ -38,12 +41,11 @@ def main(words: Sequence[str] | None = None) -> int:
     except ProgramError as error:  # killed by a signal, for example
         return _complain(_FAILED, str(error))
     except FileNotFoundError as error:
-        if error.filename is not None and Path(error.filename) == options.file:
+        if error.filename is not None and Path(error.filename) == getattr(options, "file", None):
             return _complain(_WRONG, f"there is no file {options.file}")
         return _complain(_ENVIRONMENT, str(error))
     except (OSError, MissingPackage, FileError) as error:
         return _complain(_ENVIRONMENT, str(error))
-    return 0
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -51,6 +53,8 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_calibrate(commands)
     add_sweep(commands, _count)
+    add_fos(commands)
+    add_diff(commands)
     return parser
 
 
@@ -72,11 +76,12 @@ def _folder_of_calibration(options: argparse.Namespace) -> Path:
     return options.out if options.out is not None else default_folder(options.file)
 
 
-def _calibrate(options: argparse.Namespace) -> None:
+def _calibrate(options: argparse.Namespace) -> int:
     out = _folder_of_calibration(options)
     print(calibrate(options.file, out=out, jobs=options.jobs, threads=options.threads, pictures=options.pictures, program=options.program,
                     tell=None if options.quiet else _tell))
     print(f"results in {out}: calibration.json, calibration.csv, best.yaml{', calibration.png' if options.pictures else ''}")
+    return 0
 
 
 def _count(word: str) -> int:

@@ -31,7 +31,7 @@ def add_sweep(commands: Any, whole: Any) -> None:
     one.set_defaults(run=_run, folder=lambda options: options.out if options.out is not None else default_folder(options.file))
 
 
-def _run(options: argparse.Namespace) -> None:
+def _run(options: argparse.Namespace) -> int:
     def tell(text: str) -> None:
         if not options.quiet or options.list:
             print(text, flush=True)
@@ -44,3 +44,4 @@ def _run(options: argparse.Namespace) -> None:
     else:
         sweep(options.file, out=options.out, jobs=options.jobs, threads=options.threads, case=options.case, launcher=options.launcher,
               quick=options.quick, pictures=options.pictures, tell=tell, warn=warn, program=options.program)
+    return 0
