@@ -25,6 +25,11 @@ docs() {
   awk '/^```yaml/ {in_scene = 1; next} /^```/ {in_scene = 0} in_scene' README.md > runs/block.yaml
   build/talus run runs/block.yaml --out runs/block
   render block --outline start --out docs/images/first_scene.png
+  awk '/^scene: block.yaml/ {in_study = 1} /^```/ {in_study = 0} in_study' docs/guide/parameter_studies.md > runs/block_latin.yaml
+  sed 's/^combine: latin/combine: tornado/; /^samples/d' runs/block_latin.yaml > runs/block_tornado.yaml
+  for kind in latin tornado; do build/talus sweep "runs/block_$kind.yaml" --out "runs/block_$kind"; done
+  cp runs/block_latin/exceedance_toe.png docs/images/sweep_exceedance.png
+  cp runs/block_tornado/tornado_toe.png docs/images/sweep_tornado.png
   build/talus fos benchmarks/factor_of_safety/acads.yaml --from 0.9 --to 1.1 --width 0.025 --out runs/acads_fos
   cp runs/acads_fos/mechanism.png docs/images/fos_mechanism.png
   for script in python/examples/gallery/*.py; do

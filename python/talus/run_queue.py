@@ -30,7 +30,7 @@ class StoppedRuns(KeyboardInterrupt):
 
 
 def divide_cores(jobs: int | None, threads: int | None, runs: int, *, has_launcher: bool) -> tuple[int, int | None]:
-    """How many runs there are at a time, and the threads of each, None if the launcher decides: what is not given follows from the cores."""
+    """The number of runs at a time, and of threads of each, None if the launcher decides: what is not given follows from the cores."""
     word = os.environ.get("OMP_NUM_THREADS", "").split(",")[0]
     cores = int(word) if word.isdecimal() and int(word) > 0 else len(os.sched_getaffinity(0))
     at_a_time = jobs if jobs is not None else max(1, min(runs, cores // (threads or 1)))

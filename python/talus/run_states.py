@@ -62,7 +62,7 @@ class RunState:
 
 
 def state_of(run: PlannedRun, *, quick: bool) -> RunState:
-    """The state of a run.  Results of another scene, of other changes or of another mesh, if its digest is known, are not those of the run."""
+    """The state of a run.  Results of another scene, of other changes or of another mesh, if its digest is known, do not count."""
     path = run.folder / "summary.json"
     if not path.exists():
         return RunState()

@@ -198,8 +198,8 @@ def open_run(folder: str | os.PathLike[str]) -> Run:
 
 
 class Sweep:
-    """The folder of a parameter study (`talus.sweep`, `talus sweep`): `table` has a row for each case; `run(k)` opens the results of case k, as
-    numbered in the column `case`.  What depends on the kind of study raises FileNotFoundError where it was not written."""
+    """The folder of a parameter study (`talus.sweep`, `talus sweep`): `table` has a row for each case; `run(k)` opens the results of
+    case k, as numbered in the column `case`.  What depends on the kind of study raises FileNotFoundError where it was not written."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)

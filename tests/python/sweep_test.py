@@ -71,8 +71,8 @@ class Studies(InAFolder):
 class StudyFiles(Studies):
     def test_is_a_grid_unless_it_says_rows_and_the_last_key_varies_fastest(self):
         vary = "scene: scene.yaml\nvary:\n  time.end: [1, 2.50]\n  mesh.size: [0.1, 0.2]\n"
-        self.assertEqual(self.cases(self.read(vary)), ["time.end=1 mesh.size=0.1", "time.end=1 mesh.size=0.2", "time.end=2.50 mesh.size=0.1",
-                                                       "time.end=2.50 mesh.size=0.2"])
+        self.assertEqual(self.cases(self.read(vary)),
+                         [f"time.end={end} mesh.size={size}" for end in ("1", "2.50") for size in ("0.1", "0.2")])
         self.assertEqual(self.cases(self.read(vary + "combine: rows\n")), ["time.end=1 mesh.size=0.1", "time.end=2.50 mesh.size=0.2"])
 
     def test_a_tornado_varies_one_key_at_a_time(self):
@@ -94,7 +94,8 @@ class StudyFiles(Studies):
 
     def test_says_all_that_is_wrong_at_once(self):
         self.assert_says("scene: other.yaml\nvary:\n  a=b: [1]\n  time.end: 3\n  time.cfl: []\ncombine: gridd\ncolect: [a]\n",
-                         "study.yaml:1:8: error: scene: there is no file other.yaml", 'study.yaml:3:3: error: vary.a=b: "a=b" is no path of keys',
+                         "study.yaml:1:8: error: scene: there is no file other.yaml",
+                         'study.yaml:3:3: error: vary.a=b: "a=b" is no path of keys',
                          "study.yaml:4:13: error: vary.time.end: expected a list of values, found \"3\"",
                          "study.yaml:5:13: error: vary.time.cfl: the list is empty",
                          'study.yaml:6:10: error: combine: "gridd" — did you mean "grid"?',
@@ -120,22 +121,25 @@ class StudyFiles(Studies):
 
     def test_says_what_is_no_distribution(self):
         self.assert_says(
-            "scene: scene.yaml\nvary:\n  a: [1, 2]\n  b: {low: 2, high: 1}\n  c: {mean: 1}\n  d: {low: 1, mode: 3, high: 2}\n  e: {hihg: 1}\n"
-            "  f: {distribution: gama, a: 2}\n  g: {distribution: beta, a: 2}\n  h: {mean: 1, deviation: 0}\n"
+            "scene: scene.yaml\nvary:\n  a: [1, 2]\n  b: {low: 2, high: 1}\n  c: {mean: 1}\n  d: {low: 1, mode: 3, high: 2}\n"
+            "  e: {hihg: 1}\n  f: {distribution: gama, a: 2}\n  g: {distribution: beta, a: 2}\n  h: {mean: 1, deviation: 0}\n"
             "  i: {distribution: lognormal, mean: -1, deviation: 1}\n  j: {distribution: beta, a: -2, b: 1}\n"
             "  k: {distribution: weibull_min, c: 2, low: 5, high: 4}\ncombine: latin\n",
             "study.yaml:3:6: error: vary.a: expected a distribution, such as {low: 1, high: 2}",
-            "study.yaml:4:6: error: vary.b: low 2 must be below high 1", "study.yaml:5:6: error: vary.c: mean and deviation belong together",
+            "study.yaml:4:6: error: vary.b: low 2 must be below high 1",
+            "study.yaml:5:6: error: vary.c: mean and deviation belong together",
             "study.yaml:6:6: error: vary.d: mode 3 is not between low 1 and high 2",
             'study.yaml:7:7: error: vary.e: unknown key "hihg" — did you mean "high"?',
             'study.yaml:8:21: error: vary.f.distribution: unknown distribution "gama" — did you mean "gamma"?',
-            "study.yaml:9:6: error: vary.g: beta needs b, as in scipy.stats.beta", "study.yaml:10:27: error: vary.h.deviation: 0 must be > 0",
+            "study.yaml:9:6: error: vary.g: beta needs b, as in scipy.stats.beta",
+            "study.yaml:10:27: error: vary.h.deviation: 0 must be > 0",
             "study.yaml:11:6: error: vary.i: the mean -1 must be > 0", "study.yaml:12:6: error: vary.j: these are no parameters of beta",
             "study.yaml:13:6: error: vary.k: no value of this distribution lies between 5 and 4",
             "study.yaml:14:10: error: combine: latin needs samples")
         self.assert_says("scene: scene.yaml\nvary:\n  a: {low: 1, high: 2}\n",
                          "study.yaml:3:6: error: vary.a: a distribution is of combine: latin, sobol or tornado")
-        self.assert_says("scene: scene.yaml\nvary:\n  a: [1]\nsamples: 3\ncorrelations: []\n", "study.yaml:4:10: error: samples: is of combine: latin",
+        self.assert_says("scene: scene.yaml\nvary:\n  a: [1]\nsamples: 3\ncorrelations: []\n",
+                         "study.yaml:4:10: error: samples: is of combine: latin",
                          "study.yaml:5:15: error: correlations: is of combine: latin or sobol")
 
     def test_says_what_is_no_correlation(self):
@@ -228,11 +232,13 @@ class Parts(InAFolder):
         self.assertAlmostEqual(rank_correlation(x, np.array([1, 10, 11, 1000, 1e6])), 1, 12)
         self.assertAlmostEqual(rank_correlation(x, x[::-1]), -1, 12)
         self.assertTrue(math.isnan(rank_correlation(x, np.full(5, 7.0))))
-        self.assertAlmostEqual(rank_correlation(x, np.array([2.0, 1, 4, 3, 5])), 1 - 6 * 4 / (5.0 * 24), 12)  # 1 - 6 sum d^2 / (n (n^2 - 1))
-        self.assertAlmostEqual(rank_correlation(np.array([1.0, 1, 2]), np.array([1.0, 2, 3])), math.sqrt(0.75), 12, "ties share their mean rank")
+        # 1 - 6 sum d^2 / (n (n^2 - 1)); ties share their mean rank
+        self.assertAlmostEqual(rank_correlation(x, np.array([2.0, 1, 4, 3, 5])), 1 - 6 * 4 / (5.0 * 24), 12)
+        self.assertAlmostEqual(rank_correlation(np.array([1.0, 1, 2]), np.array([1.0, 2, 3])), math.sqrt(0.75), 12)
 
     def test_texts_of_tables(self):
-        self.assertEqual([file_word(name) for name in ("max(kinetic) [J]", "bodies[0].mass [kg]", "toe")], ["max_kinetic", "bodies_0_.mass", "toe"])
+        names = {"max(kinetic) [J]": "max_kinetic", "bodies[0].mass [kg]": "bodies_0_.mass", "toe": "toe"}
+        self.assertEqual([file_word(name) for name in names], list(names.values()))
         self.assertEqual([cell(word) for word in ("=1+1", "-2", "'=a", "a")], ["'=1+1", "-2", "''=a", "a"])
 
     def test_a_share_has_the_grid_of_a_map_and_is_read_back(self):
@@ -264,8 +270,8 @@ class Parts(InAFolder):
         for text, why in (("{", "is not the summary of a run"), ("[]", "is not the summary of a run"),
                           ('{"scene": {"digest": "0"}, "mesh": {}, "stages": [], "program": {}}', "of another scene"),
                           ('{"scene": {"digest": "1"}, "mesh": {"digest": "0"}, "stages": [], "program": {}}', "of another mesh"),
-                          ('{"status": "done", "scene": {"digest": "1"}, "mesh": {"digest": "2"}, "stages": [{"result": "quick"}], "program": {}}',
-                           "are of a quick run")):
+                          ('{"status": "done", "scene": {"digest": "1"}, "mesh": {"digest": "2"}, "stages": [{"result": "quick"}], '
+                           '"program": {}}', "are of a quick run")):
             self.write("out/summary.json", text)
             self.assertIn(why, state_of(run, quick=False).why)
 
@@ -285,7 +291,7 @@ class Sweeps(Studies):
         return talus.sweep("study.yaml", **{"out": "out", "threads": 1, "pictures": False, **options})
 
     def test_give_a_table_with_the_results_and_do_not_repeat_what_is_done(self):
-        vary = "vary: {materials[0].youngs_modulus: [1.0e5, 2.0e5]}\ncollect: [max(kinetic), steps]\n".replace("{mat", '{"mat').replace("lus: ", 'lus": ')
+        vary = 'vary: {"materials[0].youngs_modulus": [1.0e5, 2.0e5]}\ncollect: [max(kinetic), steps]\n'
         lines = []
         found = self.sweep(vary, tell=lines.append)
         frame = found.to_pandas()

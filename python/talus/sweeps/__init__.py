@@ -50,8 +50,8 @@ def sweep(study: str | os.PathLike[str] | Mapping[str, Any], *, out: str | os.Pa
     warn      is called with warnings; default `tell`, after "warning: "
     program   the program talus; default: `find_program`
 
-    Needs PyYAML, for samples and findings SciPy, and h5py where a case was stopped.  Raises SceneError with all errors of all cases, at their
-    places, before anything runs; RunFailed, which names the cases that failed, when the others have run and the table is written;
+    Needs PyYAML, for samples and findings SciPy, and h5py where a case was stopped.  Raises SceneError with all errors of all cases, at
+    their places, before anything runs; RunFailed, which names the cases that failed, when the others have run and the table is written;
     EnvironmentFailure for a folder with other results.  Ctrl-C, and SIGTERM and SIGUSR1, let the cases write checkpoints and raise
     `StoppedRuns`, a KeyboardInterrupt; the same call goes on.
     """
@@ -130,9 +130,10 @@ def _conclude(plan: Plan, table: SweepTable, pictures: bool, tell: Tell, warn: T
     for i, state in enumerate(table.states):
         if state.state == DONE and state.commit != plan.commit:
             other.setdefault(state.commit, []).append(i + 1)
-    commits = [f"this program is of commit {plan.commit}; case {', '.join(map(str, numbers))} by commit {commit}: remove their folders to run "
-               "them again" for commit, numbers in other.items()]
+    commits = [f"this program is of commit {plan.commit}; case {', '.join(map(str, numbers))} by commit {commit}: remove their folders to "
+               "run them again" for commit, numbers in other.items()]
     known = {one.folder.name for one in plan.cases}
-    strays = [f"{path} is of no case of this study" for path in sorted(plan.folder.glob("case_*")) if path.is_dir() and path.name not in known]
+    strays = [f"{path} is of no case of this study" for path in sorted(plan.folder.glob("case_*"))
+              if path.is_dir() and path.name not in known]
     for warning in [*plan.study.warnings, *findings.warnings, *commits, *table.unknown_names(), *strays]:
         warn(warning)

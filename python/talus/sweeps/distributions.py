@@ -81,7 +81,8 @@ def _of_scipy(entry: Entry, name: str, shapes: tuple[str, ...], given: dict[str,
     if missing := [word for word in shapes if word not in given]:
         entry.wrong(f"{name} needs {' and '.join(missing)}, as in scipy.stats.{name}")
         return None
-    law = getattr(need("scipy.stats", "samples keys"), name)(**{word: value for word, value in given.items() if word not in ("low", "high")})
+    parameters = {word: value for word, value in given.items() if word not in ("low", "high")}
+    law = getattr(need("scipy.stats", "samples keys"), name)(**parameters)
     if not np.isfinite(law.median()):
         entry.wrong(f"these are no parameters of {name}: see scipy.stats.{name}")
         return None
@@ -137,7 +138,7 @@ def _is_between(entry: Entry, low: float, high: float, name: str, value: float |
 
 
 def _cut(entry: Entry, law: Any, low: float, high: float) -> Distribution | None:
-    """The distribution between two values; its tornado has the median, and what lies below and above as far as one deviation of a normal one."""
+    """The distribution between two values; its tornado has the median, and the quantiles of one deviation of a normal distribution."""
     if not low < high or not law.cdf(high) - law.cdf(low) > 0:
         entry.wrong(f"no value of this distribution lies between {low:g} and {high:g}")
         return None

@@ -40,8 +40,8 @@ def draw_tornado(path: Path, heading: str, base: float, bars: Sequence[tuple[str
     high = 0.55 * len(bars)
     figure, axes = _figure(8, 2.0 + high)
     places = np.arange(len(bars))
-    for ends, colour, label in (([bar[3] for bar in bars], _LOW, "at the low value"), ([bar[4] for bar in bars], _HIGH, "at the high value")):
-        axes.barh(places, np.array(ends) - base, left=base, height=0.55, color=colour, label=label)
+    for end, colour, label in ((3, _LOW, "at the low value"), (4, _HIGH, "at the high value")):
+        axes.barh(places, np.array([bar[end] for bar in bars]) - base, left=base, height=0.55, color=colour, label=label)
     axes.axvline(base, color="black", linewidth=1, label="all in the middle")
     axes.set_yticks(places, [f"{key}\n{low} to {high}" for key, low, high, _, _ in bars])
     axes.invert_yaxis()
@@ -72,8 +72,8 @@ def draw_map(path: Path, what: str, grid: CaseMap, share: np.ndarray) -> None:
     (dx, dy), x, y = grid.cell, grid.x, grid.y
     wide, high = len(x) * dx, len(y) * dy
     figure, axes = _figure(8, float(np.clip(7 * high / wide, 2.5, 9)))
-    image = axes.imshow(np.where(share > 0, share, np.nan), extent=(x[0] - dx / 2, x[-1] + dx / 2, y[-1] - dy / 2, y[0] + dy / 2), vmin=0, vmax=1,
-                        cmap="viridis")
+    extent = x[0] - dx / 2, x[-1] + dx / 2, y[-1] - dy / 2, y[0] + dy / 2
+    image = axes.imshow(np.where(share > 0, share, np.nan), extent=extent, vmin=0, vmax=1, cmap="viridis")
     axes.set(xlabel="[m]", ylabel="[m]", title=what[0].upper() + what[1:])
     axes.ticklabel_format(useOffset=False, style="plain")
     figure.colorbar(image, ax=axes)

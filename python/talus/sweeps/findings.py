@@ -104,8 +104,8 @@ class Findings:
             return
         shares = (len(values) - np.arange(len(values))) / len(values)
         heading = _with_unit(self._headings[k])
-        path = self._write(f"exceedance_{file_word(self._headings[k])}.csv",
-                           [[heading, "share_of_cases [-]"], *([number_text(v), number_text(s)] for v, s in zip(values.tolist(), shares.tolist()))])
+        rows = [[number_text(value), number_text(share)] for value, share in zip(values.tolist(), shares.tolist())]
+        path = self._write(f"exceedance_{file_word(self._headings[k])}.csv", [[heading, "share_of_cases [-]"], *rows])
         if values[0] < values[-1]:
             self._draw(path, "draw_exceedance", heading, values, shares)
 
@@ -138,8 +138,8 @@ class Findings:
                 raise _NoMap(f"case {i + 1} has no maps/{exceed.map}.tif; outputs.runout of the scene makes maps")
             first = first or (i, found)
             if not found.has_grid_of(first[1]):
-                raise _NoMap(f"the maps of case {first[0] + 1} and case {i + 1} lie on different grids: give outputs.runout.cell, and all cases "
-                             "one mesh")
+                raise _NoMap(f"the maps of case {first[0] + 1} and case {i + 1} lie on different grids: give outputs.runout.cell, and all "
+                             "cases one mesh")
             yield i, found
 
     def _exceedance_map(self, exceed: Exceed) -> None:

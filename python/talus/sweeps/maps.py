@@ -45,7 +45,7 @@ class CaseMap:
 
 
 def read_map(folder: Path, name: str) -> CaseMap | None:
-    """The map of a case, a GeoTIFF as Talus writes it or an ESRI ASCII grid; None if there is none.  Raises FileError if it cannot be read."""
+    """The map of a case, a GeoTIFF as Talus writes it or an ESRI ASCII grid; None if there is none.  Raises FileError."""
     for path in (folder / "maps" / f"{name}{ending}" for ending in (".tif", ".asc")):
         if not path.exists():
             continue
@@ -59,8 +59,8 @@ def read_map(folder: Path, name: str) -> CaseMap | None:
 
 
 def write_share(path: Path, share: np.ndarray, like: CaseMap) -> None:
-    """Writes a map (rows, columns) with the grid and the coordinate system of another one: as GeoTIFF in single precision; for an ASCII grid
-    with its .prj beside it, if it has one."""
+    """Writes a map (rows, columns) with the grid and the coordinate system of another one: as GeoTIFF in single precision; for an ASCII
+    grid with its .prj beside it, if it has one."""
     rows, columns = share.shape
     packed = zlib.compress(_predicted(share.astype(">f4")))
     (dx, dy), start = like.cell, 8

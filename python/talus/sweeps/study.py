@@ -165,7 +165,8 @@ def _varied(vary: Entry | None) -> list[tuple[str, Entry]]:
         return []
     for name, _ in vary.node.value:
         if "=" in str(name.value):
-            Entry(name, f"vary.{name.value}", vary.problems).wrong(f'"{name.value}" is no path of keys such as time.end or materials[0].cohesion')
+            where = Entry(name, f"vary.{name.value}", vary.problems)
+            where.wrong(f'"{name.value}" is no path of keys such as time.end or materials[0].cohesion')
     return list(vary.items())
 
 
@@ -229,8 +230,8 @@ def _check_lists(combine: str, lists: dict[str, tuple[Entry, list[Value]]], vary
         if combine == "rows":
             count = len(values)
             if len(values) != len(values_of_first):
-                entry.wrong(f"has {len(values)} values where {first} has {len(values_of_first)}: in rows the first meets the first, the second "
-                            "the second")
+                entry.wrong(f"has {len(values)} values where {first} has {len(values_of_first)}: in rows the first meets the first, the "
+                            "second the second")
             continue
         count *= len(values)
         known: set[str] = set()
@@ -255,7 +256,8 @@ def _text(value: float) -> str:
     return f"{value:.6g}"
 
 
-def _sampled(spread: dict[str, tuple[Entry, Distribution]], samples: int, seed: int, method: str, correlations: np.ndarray) -> list[list[Value]]:
+def _sampled(spread: dict[str, tuple[Entry, Distribution]], samples: int, seed: int, method: str,
+             correlations: np.ndarray) -> list[list[Value]]:
     shares = shares_of(list(spread), samples, seed, method, correlations)
     columns = [[Value(_text(value), entry) for value in distribution.quantile(column)]
                for (entry, distribution), column in zip(spread.values(), shares.T)]

@@ -79,7 +79,8 @@ class SweepTable:
         for k, name in enumerate(self._plan.study.collect):
             if self._known and not any(row[k] for row in self._numbers):
                 at = f"{self._plan.study.file}:{name.entry.line}:{name.entry.column}: {name.entry.key}"
-                hint = meant(_asked(name.text)[1], self._known, "the keys of summary.json, joined by points, and the columns of history.csv")
+                names = "the keys of summary.json, joined by points, and the columns of history.csv"
+                hint = meant(_asked(name.text)[1], self._known, names)
                 yield f'{at}: no case has a number "{name.text}"{hint}'
 
     def _words(self, i: int) -> list[str]:
