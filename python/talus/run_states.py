@@ -5,7 +5,7 @@ import fcntl
 import json
 import os
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -24,15 +24,29 @@ class PlannedRun:
     changes       key=value, as for --set
     scene_digest  of the present scene with these changes, as in summary.json
     mesh_digest   of the present mesh; empty if it was not computed
+    quick         whether it is coarse and short
     """
 
-    changes: list[str]
+    scene: Path
+    changes: Sequence[str]
     folder: Path
     scene_digest: str = ""
     mesh_digest: str = ""
+    quick: bool = False
 
     def __str__(self) -> str:
         return ", ".join(self.changes) or "the scene as it is"
+
+    @property
+    def log(self) -> Path:
+        """The file with the output of the run."""
+        return self.folder.with_name(self.folder.name + ".log")
+
+    @property
+    def command(self) -> str:
+        """The command that repeats it, for the shell."""
+        changes = [word for change in self.changes for word in ("--set", change)]
+        return shlex.join(["talus", "run", str(self.scene), "--out", str(self.folder), *(["--quick"] if self.quick else []), *changes])
 
 
 class Number(NamedTuple):
@@ -61,7 +75,7 @@ class RunState:
     numbers: dict[str, Number] = field(default_factory=dict, repr=False)
 
 
-def state_of(run: PlannedRun, *, quick: bool) -> RunState:
+def state_of(run: PlannedRun) -> RunState:
     """The state of a run.  Results of another scene, of other changes or of another mesh, if its digest is known, do not count."""
     path = run.folder / "summary.json"
     if not path.exists():
@@ -77,12 +91,12 @@ def state_of(run: PlannedRun, *, quick: bool) -> RunState:
         return RunState(why="its results are of another scene or of other changes")
     if run.mesh_digest and mesh != run.mesh_digest:
         return RunState(why="its results are of another mesh")
-    if status == DONE and was_quick != quick:
-        return RunState(why="its results are not of a quick run" if quick else "its results are of a quick run")
+    if status == DONE and was_quick != run.quick:
+        return RunState(why="its results are not of a quick run" if run.quick else "its results are of a quick run")
     if status == DONE:
         return RunState(DONE, commit=commit, mesh_digest=mesh, numbers=dict(_numbers(summary, "", "")))
     if status == STOPPED or message == BEFORE_THE_END:
-        time = _time_kept(run, quick)
+        time = _time_kept(run)
         return RunState(STOPPED if status == STOPPED else NOT_ENDED, goes_on_from=time, commit=commit, mesh_digest=mesh)
     return RunState(FAILED, message, commit=commit, mesh_digest=mesh)
 
@@ -102,7 +116,7 @@ def _numbers(value: Any, path: str, unit: str) -> Iterator[tuple[str, Number]]:
         yield path, Number(float("nan") if value is None else float(value), unit)
 
 
-def _time_kept(run: PlannedRun, quick: bool) -> float | None:
+def _time_kept(run: PlannedRun) -> float | None:
     """The time of the newest checkpoint of this run [s], or None."""
     for path in sorted((run.folder / "checkpoints").glob("step_*.h5"), reverse=True):
         try:
@@ -111,7 +125,7 @@ def _time_kept(run: PlannedRun, quick: bool) -> float | None:
                     continue
                 changes = [kept.text(f"run/set/{k}") for k in range(int(kept["run/set/count"][0]))]
                 mesh = f"{int(kept['run/mesh'][0]) % 2**64:016x}"
-                is_same = changes == run.changes and bool(kept["run/quick"][0]) == quick and run.mesh_digest in ("", mesh)
+                is_same = changes == list(run.changes) and bool(kept["run/quick"][0]) == run.quick and run.mesh_digest in ("", mesh)
                 return kept.time if is_same else None
         except (OSError, FileError, Missing, ValueError):
             continue  # the program passes over damaged ones too
@@ -133,9 +147,3 @@ def is_at_work(run: PlannedRun) -> bool:
     finally:
         os.close(handle)
     return False
-
-
-def command_of(scene: Path, run: PlannedRun, *, quick: bool) -> str:
-    """The command of a run for the user."""
-    changes = [word for change in run.changes for word in ("--set", change)]
-    return shlex.join(["talus", "run", str(scene), "--out", str(run.folder), *(["--quick"] if quick else []), *changes])

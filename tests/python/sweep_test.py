@@ -17,7 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
 import talus  # noqa: E402
 from talus.calibration.places import Block, read_yaml  # noqa: E402
-from talus.run_queue import RunQueue, divide_cores  # noqa: E402
+from talus.child_runs import Share, divide_cores  # noqa: E402
+from talus.run_queue import RunQueue  # noqa: E402
 from talus.run_states import PlannedRun, RunState, state_of  # noqa: E402
 from talus.sweeps.distributions import read_distribution, shares_of  # noqa: E402
 from talus.sweeps.findings import file_word, rank_correlation  # noqa: E402
@@ -257,15 +258,15 @@ class Parts(InAFolder):
 
     def test_cores_are_divided(self):
         with unittest.mock.patch.dict(os.environ, {"OMP_NUM_THREADS": "8"}):
-            self.assertEqual(divide_cores(None, None, 20, has_launcher=False), (8, 1))
-            self.assertEqual(divide_cores(None, None, 2, has_launcher=False), (2, 4))
-            self.assertEqual(divide_cores(3, None, 20, has_launcher=False), (3, 2))
-            self.assertEqual(divide_cores(None, 4, 20, has_launcher=False), (2, 4))
-            self.assertEqual(divide_cores(None, None, 20, has_launcher=True), (8, None))
+            self.assertEqual(divide_cores(None, None, None, 20), Share(8, 1))
+            self.assertEqual(divide_cores(None, None, None, 2), Share(2, 4))
+            self.assertEqual(divide_cores(3, None, None, 20), Share(3, 2))
+            self.assertEqual(divide_cores(None, 4, None, 20), Share(2, 4))
+            self.assertEqual(divide_cores(None, None, "mpirun", 20), Share(8, None))
 
     def test_a_summary_of_another_run_says_why_it_does_not_count(self):
-        run = PlannedRun(["time.end=1"], self.folder / "out", "1", "2")
-        self.assertEqual(state_of(run, quick=False), RunState())
+        run = PlannedRun(Path("scene.yaml"), ["time.end=1"], self.folder / "out", "1", "2")
+        self.assertEqual(state_of(run), RunState())
         run.folder.mkdir()
         for text, why in (("{", "is not the summary of a run"), ("[]", "is not the summary of a run"),
                           ('{"scene": {"digest": "0"}, "mesh": {}, "stages": [], "program": {}}', "of another scene"),
@@ -273,14 +274,14 @@ class Parts(InAFolder):
                           ('{"status": "done", "scene": {"digest": "1"}, "mesh": {"digest": "2"}, "stages": [{"result": "quick"}], '
                            '"program": {}}', "are of a quick run")):
             self.write("out/summary.json", text)
-            self.assertIn(why, state_of(run, quick=False).why)
+            self.assertIn(why, state_of(run).why)
 
     def test_a_queue_waits_for_its_runs_when_it_is_left(self):
         def fail(_):
             raise OSError("the disk is full")
         script = self.write("slow", "#!/bin/sh\nsleep 0.1\n")
         script.chmod(0o755)
-        queue = RunQueue(Path("scene.yaml"), [("run", PlannedRun([], self.folder / "out"))], fail, script, 1, 1)
+        queue = RunQueue([("run", PlannedRun(Path("scene.yaml"), [], self.folder / "out"))], fail, script, Share(1, 1))
         with self.assertRaises(OSError):
             queue([0])
 

@@ -13,9 +13,10 @@ from typing import Any
 
 from ..calibration.evaluation import Stopped
 from ..calibration.files import write_whole
-from ..child_runs import DONE, FAILED, ChildRuns, Ended, Planned, Status, divide_cores, status_of
+from ..child_runs import ChildRuns, Ended, divide_cores
 from ..errors import EnvironmentFailure, RunFailed
 from ..program import STOPPED as STOPPED_ON_REQUEST
+from ..run_states import DONE, FAILED, PlannedRun, state_of
 from ..runs import Run
 from ..tables import Table
 from .plan import RUN, STATIC, Plan, number
@@ -34,7 +35,7 @@ class _Try:
 
     factor: float
     times: int
-    run: Planned
+    run: PlannedRun
 
 
 class Search:
@@ -50,7 +51,7 @@ class Search:
         self._share = divide_cores(jobs, threads, launcher, _MOST_AT_A_TIME)
         self._alone = ChildRuns(plan.program, launcher, threads)  # of one run, which has all cores
         self._runs = ChildRuns(plan.program, launcher, self._share.threads)
-        self._made: dict[float, Planned] = {}
+        self._made: dict[float, PlannedRun] = {}
         self._broken_off = broken_off(plan.folder / "fos.json")   # digests of trials that failed by their physics
 
     def __call__(self) -> None:
@@ -125,7 +126,7 @@ class Search:
         return {"factor": trial.factor, "verdict": trial.verdict,
                 **{name: value if value is not None and math.isfinite(value) else None for name, value in zip(names, measures)},
                 "by_growth_alone": trial.by_growth_alone, "message": trial.message, "folder": run.folder.name,
-                "scene_digest": run.digest, "command": run.command}
+                "scene_digest": run.scene_digest, "command": run.command}
 
     @property
     def _second_measure(self) -> str:
@@ -133,15 +134,15 @@ class Search:
 
     def _find_rest(self) -> None:
         rest = self.plan.at_rest
-        status = status_of(rest)
+        status = state_of(rest)
         if status.state == DONE:
             return self.tell(f"at rest: done before, in {rest.folder}")
-        self.tell(f"at rest: {'goes on' if status.resumes else 'begins'} in {rest.folder}")
+        self.tell(f"at rest: {'goes on' if status.goes_on_from is not None else 'begins'} in {rest.folder}")
         self._alone.start(rest, status)
         ended: list[Ended] = []
         while not ended:
             ended = self._alone.look()
-        now = status_of(rest)
+        now = state_of(rest)
         if ended[0].code == 0 and now.state == DONE:
             return self.tell(f"at rest: done after {ended[0].seconds:.1f} s")
         self._refuse_stopped(ended[0])
@@ -171,9 +172,9 @@ class Search:
 
     def _judge(self, one: _Try) -> Trial | None:
         """Judges an existing run; returns the verdict, which is added to the trials, if there is one."""
-        status = status_of(one.run)
+        status = state_of(one.run)
         trial = None
-        if status.state == FAILED and one.run.digest in self._broken_off:
+        if status.state == FAILED and one.run.scene_digest in self._broken_off:
             trial = Trial(one.factor, FAILS, message=status.why)
         elif status.state == DONE:
             motion = motion_of(Table(one.run.folder / "history.csv"), self.plan.columns, self.plan.before)
@@ -194,10 +195,10 @@ class Search:
         while waiting or len(self._runs):
             while waiting and len(self._runs) < self._share.jobs:
                 one = waiting.popleft()
-                status = status_of(one.run)
+                status = state_of(one.run)
                 self._runs.start(one.run, status)
                 what = "as it is" if one.factor == 1 else f"strength divided by {one.factor:.6g}"
-                self.tell(f"{one.factor:.6g}: {'goes on' if status.resumes else 'begins'} ({what})")
+                self.tell(f"{one.factor:.6g}: {'goes on' if status.goes_on_from is not None else 'begins'} ({what})")
                 started[one.run.folder] = one
             for ended in self._runs.look():
                 waiting.extend(self._see_end(started[ended.run.folder], ended))
@@ -205,9 +206,9 @@ class Search:
     def _see_end(self, one: _Try, ended: Ended) -> list[_Try]:
         """Judges a run that has ended, or returns the same one with twice the duration."""
         self._refuse_stopped(ended)
-        status: Status = status_of(one.run)
+        status = state_of(one.run)
         if ended.code == _RUN_FAILED and status.state == FAILED:
-            self._broken_off.add(one.run.digest)
+            self._broken_off.add(one.run.scene_digest)
         elif ended.code != 0:
             raise EnvironmentFailure(f"the trial of {one.factor:.6g} did not run: {self._runs.why(ended, status)}", 3)
         trial = self._judge(one)

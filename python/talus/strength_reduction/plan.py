@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..child_runs import Planned
 from ..errors import Message, Missing, SceneError, located
 from ..program import facts_of
+from ..run_states import PlannedRun
 from ..scenes import flow
 from .search import AtRest, Criterion, Range, usual_duration
 
@@ -56,7 +56,7 @@ class Plan:
     scene: Path
     folder: Path
     title: str
-    at_rest: Planned
+    at_rest: PlannedRun
     bodies: dict[str, float]
     weakened: dict[str, float] = field(repr=False)
     of_state: tuple[str, ...] = field(repr=False)
@@ -71,11 +71,11 @@ class Plan:
     stage: dict[str, Any]
     program: Path
 
-    def trial(self, factor: float, times_as_long: int) -> Planned:
+    def trial(self, factor: float, times_as_long: int) -> PlannedRun:
         """The run for a factor, with its duration multiplied.  Raises SceneError."""
         changes = (*self.of_state, *self._changes(factor, self.duration * times_as_long))
-        return Planned(self.scene, changes, self.folder / f"trial_{number(factor)}", digest_of(self.scene, changes, self.program),
-                       self.at_rest.quick)
+        return PlannedRun(self.scene, changes, self.folder / f"trial_{number(factor)}", digest_of(self.scene, changes, self.program),
+                          quick=self.at_rest.quick)
 
     def _changes(self, factor: float, duration: float) -> list[str]:
         weaken = [{"body": name, "factor": factor * divided} for name, divided in self.bodies.items()]
@@ -136,7 +136,8 @@ def plan_search(scene: Path, changes: Sequence[str], folder: Path, options: Opti
     keeps_strain = any("plastic_strain" in body["stages"][last]["variables"] for body in chosen)
     divided = {name: body["stages"][last]["strength_divided_by"] for name, body in there.items()}
     plan = Plan(scene, folder, facts["title"],
-                Planned(scene, (*changes, *at_rest), folder / "at_rest", digest_of(scene, [*changes, *at_rest], program), options.quick),
+                PlannedRun(scene, (*changes, *at_rest), folder / "at_rest", digest_of(scene, [*changes, *at_rest], program),
+                           quick=options.quick),
                 {name: divided[name] for name in names},
                 {name: factor for name, factor in divided.items()
                  if factor != 1 and name not in names and there[name]["stages"][last]["has_strength"]},

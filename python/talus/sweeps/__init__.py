@@ -10,9 +10,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from ..child_runs import divide_cores
 from ..errors import EnvironmentFailure, SceneError
 from ..program import find_program
-from ..run_queue import RunQueue, divide_cores
+from ..run_queue import RunQueue
 from ..run_states import DONE, NOT_ENDED, RunState, is_at_work
 from ..runs import Sweep
 from ..scenes import write_scene
@@ -62,17 +63,16 @@ def sweep(study: str | os.PathLike[str] | Mapping[str, Any], *, out: str | os.Pa
     table = SweepTable(plan)
     table.update()
     left = [i for i in chosen if table.states[i].state != DONE]
-    at_a_time, of_each = divide_cores(1 if case is not None else jobs, threads, len(left), has_launcher=launcher is not None)
-    words = f" with {of_each} thread{'' if of_each == 1 else 's'} each" if of_each is not None else ""
+    share = divide_cores(1 if case is not None else jobs, threads, launcher, len(left))
+    words = f" with {share.threads} thread{'' if share.threads == 1 else 's'} each" if share.threads is not None else ""
     say(f"{plan.study.file}: {len(left)} of {len(chosen)} case{'' if len(chosen) == 1 else 's'} of {plan.study.scene} to be run in "
-        f"{plan.folder}, {at_a_time} at a time{words}")
+        f"{plan.folder}, {share.jobs} at a time{words}")
 
     def look_again(i: int) -> RunState:
         table.update()
         return table.states[i]
 
-    queue = RunQueue(plan.study.scene, [(f"case {i + 1}", one) for i, one in enumerate(plan.cases)], look_again, plan.program, at_a_time,
-                     of_each, launcher, quick, say)
+    queue = RunQueue([(f"case {i + 1}", one) for i, one in enumerate(plan.cases)], look_again, plan.program, share, launcher, say)
     queue(left)
     table.update()
     say(f"{table.print()}table in {plan.folder / 'sweep.csv'}")

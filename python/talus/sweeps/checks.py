@@ -37,7 +37,7 @@ class Plan:
 def plan_sweep(study: Study, folder: Path, *, quick: bool, program: Path) -> Plan:
     """The cases of a study, each with the digest of its scene.  Raises SceneError with all errors of these scenes."""
     plan = Plan(study, folder, quick, program)
-    plan.cases = [PlannedRun(study.changes(i), folder / f"case_{i + 1:04}") for i in range(len(study.cases))]
+    plan.cases = [PlannedRun(study.scene, study.changes(i), folder / f"case_{i + 1:04}", quick=quick) for i in range(len(study.cases))]
     for case, found in zip(plan.cases, _ask(plan, plan.cases, None)):
         case.scene_digest = found["scene_digest"]
         plan.fronts += [name for name in found["fronts"] if name not in plan.fronts]
@@ -63,7 +63,7 @@ def _ask(plan: Plan, cases: Sequence[PlannedRun], models: bool | None) -> list[d
     if not cases:
         return []
     for case in cases:
-        state = state_of(case, quick=plan.quick) if models else None
+        state = state_of(case) if models else None
         is_checked = state is not None and (state.state == DONE or state.goes_on_from is not None)
         variants.append({"set": case.changes, "built_on": state.mesh_digest if state is not None and is_checked else ""})
     with tempfile.NamedTemporaryFile("w", suffix=".json", prefix="talus_cases_", encoding="utf-8") as file:

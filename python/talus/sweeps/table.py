@@ -46,7 +46,7 @@ class SweepTable:
                 pass  # no locks here
             for i, case in enumerate(self._plan.cases):
                 if self.states[i].state != DONE:
-                    self.states[i] = state_of(case, quick=self._plan.quick)
+                    self.states[i] = state_of(case)
                     if self.states[i].state == DONE:
                         self._collect(i)
             write_whole(folder / "sweep.csv", self._csv())
