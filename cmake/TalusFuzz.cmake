@@ -13,7 +13,7 @@ talus_library(fuzz_io FOLDER io
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5 ZLIB::ZLIB)
 talus_library(fuzz_solver FOLDER solver ONLY cell_order redistribute loads column_beside boundary_conditions dashpots LINKS talus_mesh talus_fuzz_materials)
 talus_library(fuzz_app FOLDER app
-              ONLY accounts body_forces checkpoints differences disk_space expression field_columns history new_results progress rank_slices
+              ONLY accounts body_forces checkpoints disk_space expression field_columns history new_results progress rank_slices
                    recorder report_survey results runout validate_state watch_drawing
               LINKS talus_fuzz_io talus_fuzz_solver
               PRIVATE muparser::muparser)

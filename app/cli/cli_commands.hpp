@@ -6,9 +6,9 @@
 #include "app/commands/calibrate_command.hpp"
 #include "app/commands/check_command.hpp"
 #include "app/commands/converge/converge_command.hpp"
-#include "app/commands/diff/diff_command.hpp"
+#include "app/commands/diff_command.hpp"
 #include "app/commands/drive_command.hpp"
-#include "app/commands/fos/fos_command.hpp"
+#include "app/commands/fos_command.hpp"
 #include "app/commands/mesh_command.hpp"
 #include "app/commands/new/new_command.hpp"
 #include "app/commands/pictures/picture_commands.hpp"
@@ -36,6 +36,7 @@ class SceneCommands {
   RunOptions run_;
   std::filesystem::path check_scene_;
   std::vector<std::string> check_set_;
+  bool check_json_ = false, check_keys_ = false;
   DriveOptions drive_;
   MeshOptions mesh_;
 };

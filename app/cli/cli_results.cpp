@@ -1,13 +1,12 @@
 // Commands for the results of a run.
 #include "app/cli/cli_checks.hpp"
 #include "app/cli/cli_commands.hpp"
+#include "app/cli/cli_python.hpp"
 #include "io/pictures/settings/option_parser.hpp"
 
 namespace talus {
 
 namespace {
-
-constexpr int results_differ = 1;
 
 /// Options of talus-render, whose words are passed on unchanged.
 template <class S>
@@ -95,14 +94,12 @@ void ResultCommands::add_diff(CLI::App& app)
   CLI::App* diff = app.add_subcommand("diff", "compare the results of two runs, field by field");
   diff->add_option("a", diff_.a, "results of a run")->type_name(folder_value)->required();
   diff->add_option("b", diff_.b, "results of another run")->type_name(folder_value)->required();
-  const auto tolerance = [&](const char* name, Real& value, const char* help) {
-    return diff->add_option(name, value, help)->check(number_not_below_zero());
-  };
-  tolerance("--relative", diff_.relative, "allowed difference over the largest value of the field in both runs; default 0");
-  tolerance("--absolute", diff_.absolute, "allowed difference, in the unit of each field, besides that; default 0");
-  diff->add_option("--field", diff_.fields, "compare only these fields")->delimiter(',');
-  diff->add_flag("--last", diff_.last, "compare only the last time that both runs have");
-  diff->callback([this] { status_ = same_results(diff_) ? 0 : results_differ; });
+  const OptionsOfPython words(*diff, diff_.words);
+  words.add("--relative", "allowed difference over the largest value of the field in both runs; default 0")->check(number_not_below_zero());
+  words.add("--absolute", "allowed difference, in the unit of each field, besides that; default 0")->check(number_not_below_zero());
+  words.add_list("--field", "compare only these fields")->delimiter(',');
+  words.add_flag("--last", "compare only the last time that both runs have");
+  diff->callback([this] { compare_results(diff_); });
 }
 
 void ResultCommands::add_to(CLI::App& app)

@@ -51,7 +51,14 @@ void SceneCommands::add_check(CLI::App& app)
   CLI::App* check = app.add_subcommand("check", "find everything wrong with a scene and its mesh; say what a run would cost");
   check->add_option("scene", check_scene_, "scene file (.yaml)")->type_name(scene_value)->required();
   check->add_option("--set", check_set_, set_help);
-  check->callback([this] { check_scene(check_scene_, check_set_); });
+  CLI::Option* json = check->add_flag("--json", check_json_, "print what the scene consists of as JSON, for other programs");
+  check->add_flag("--keys", check_keys_, "check the keys alone: make no mesh")->needs(json);
+  check->callback([this] {
+    if (check_json_)
+      check_as_json(check_scene_, check_set_, check_keys_);
+    else
+      check_scene(check_scene_, check_set_);
+  });
 }
 
 void SceneCommands::add_mesh(CLI::App& app)

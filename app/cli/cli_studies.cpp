@@ -1,6 +1,7 @@
 // Commands that make many runs.
 #include "app/cli/cli_checks.hpp"
 #include "app/cli/cli_commands.hpp"
+#include "app/cli/cli_python.hpp"
 
 namespace talus {
 
@@ -61,35 +62,31 @@ void StudyCommands::add_fos(CLI::App& app)
   CLI::App* fos =
       app.add_subcommand("fos", "find the factor of safety of a scene: by how much its strength can be divided before it fails");
   fos->add_option("scene", fos_.scene, "scene file (.yaml) with a geostatic or static stage")->type_name(scene_value)->required();
-  fos->add_option("--out", fos_.out, "folder of trials and table; default runs/<name of the scene>_fos")->type_name(folder_value);
-  const auto number = [&](const char* name, auto& value, const char* help) {
-    return fos->add_option(name, value, help)->check(number_above_zero());
-  };
-  number("--from", fos_.range.from, "lowest factor that is tried first; default 0.5");
-  number("--to", fos_.range.to, "highest factor that is tried first; default 3");
-  number("--width", fos_.range.width, "how close holding and failing factors come; default 0.02");
-  fos->add_option_function<std::string>(
-         "--trials", [this](const std::string& word) { fos_.trials = word == "static" ? TrialKind::equilibrium : TrialKind::run; },
-         "runs with inertia, or static equilibria; default as the stage that finds the state at rest")
+  const OptionsOfPython words(*fos, fos_.words);
+  words.add("--out", "folder of trials and table; default runs/<name of the scene>_fos")->type_name(folder_value);
+  const auto number = [&](const char* name, const char* help) { words.add(name, help)->check(number_above_zero()); };
+  number("--from", "lowest factor that is tried first; default 0.5");
+  number("--to", "highest factor that is tried first; default 3");
+  number("--width", "how close holding and failing factors come; default 0.02");
+  words.add("--trials", "runs with inertia, or static equilibria; default as the stage that finds the state at rest")
       ->type_name(one_of({"run", "static"}))
       ->check(CLI::IsMember({"run", "static"}));
-  fos->add_option("--increments", fos_.increments, "of a static trial; default 6")->check(number_within(2, 1000));
-  number("--duration", fos_.duration, "of a run [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
-  fos->add_option("--damping", fos_.damping, "local damping of a run; default 0.3")->check(number_within(0.0, 0.9));
-  number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
-  number("--kinetic", fos_.kinetic, "of a run: kinetic energy at the end over its peak, above which it fails; default 5e-4");
-  number("--steadiness", fos_.steadiness,
-         "of a static trial: moved in its last third over the middle third, above which it fails; default 0.5");
-  fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');
-  fos->add_option("--share", fos_.mass_share, "displacement that this share of the mass does not exceed is looked at; default 0.99")
+  words.add("--increments", "of a static trial; default 6")->check(number_within(2, 1000));
+  number("--duration", "of a run [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
+  words.add("--damping", "local damping of a run; default 0.3")->check(number_within(0.0, 0.9));
+  number("--growth", "moved in the second half of a trial over the first half, above which it fails; default 0.1");
+  number("--kinetic", "of a run: kinetic energy at the end over its peak, above which it fails; default 5e-4");
+  number("--steadiness", "of a static trial: moved in its last third over the middle third, above which it fails; default 0.5");
+  words.add_list("--bodies", "whose strength is divided; default all that have some")->delimiter(',');
+  words.add("--share", "displacement that this share of the mass does not exceed is looked at; default 0.99")
       ->check(number_within(0.0, 1.0));
-  fos->add_option("--set", fos_.set, set_help);
-  fos->add_option("--jobs", fos_.jobs, "trials at a time; default one a core, up to 4")->check(number_within(1, 1024));
-  fos->add_option("--threads", fos_.threads, "threads of each; default the cores over the trials at a time")->check(number_within(1, 1024));
-  fos->add_option("--launcher", fos_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
-  fos->add_flag("!--no-pictures", fos_.pictures, "draw nothing");
-  fos->add_flag("--quick", fos_.quick, "each run coarse and short: only to see that they run");
-  fos->add_flag("--quiet", fos_.quiet, "only the factor");
+  words.add_list("--set", set_help);
+  words.add("--jobs", "trials at a time; default one a core, up to 4")->check(number_within(1, 1024));
+  words.add("--threads", "threads of each; default the cores over the trials at a time")->check(number_within(1, 1024));
+  words.add("--launcher", "what each run is started by, such as \"mpirun -n 4\"");
+  words.add_flag("--no-pictures", "draw nothing");
+  words.add_flag("--quick", "each run coarse and short: only to see that they run");
+  words.add_flag("--quiet", "only the factor");
   fos->callback([this] { find_fos(fos_); });
 }
 

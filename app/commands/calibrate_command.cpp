@@ -1,9 +1,6 @@
-// The command talus calibrate: finds the Python package talus and replaces this process by it.
+// The command talus calibrate, which is written in Python.
 #include "app/commands/calibrate_command.hpp"
 
-#include <fmt/format.h>
-
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -13,14 +10,7 @@ namespace talus {
 
 void calibrate(const CalibrateOptions& options)
 {
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
-  std::string path =
-      find_scripts(self, {.what = "the Python package talus", .variable = "TALUS_PACKAGE", .file = "talus/__main__.py", .folder = "python"})
-          .string();
-  if (const char* before = std::getenv("PYTHONPATH"); before != nullptr && *before != '\0')
-    path += fmt::format(":{}", before);
-  ::setenv("PYTHONPATH", path.c_str(), 1);
-  std::vector<std::string> words{"-P", "-m", "talus", "calibrate", options.specification.string(), "--program", self.string()};
+  std::vector<std::string> words;
   if (options.out)
     words.insert(words.end(), {"--out", options.out->string()});
   if (options.jobs)
@@ -31,7 +21,7 @@ void calibrate(const CalibrateOptions& options)
     words.emplace_back("--no-pictures");
   if (options.quiet)
     words.emplace_back("--quiet");
-  become_python(words);
+  become_command("calibrate", options.specification.string(), words);
 }
 
 }  // namespace talus

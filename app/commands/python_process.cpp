@@ -30,6 +30,20 @@ fs::path find_scripts(const fs::path& self, const PythonScripts& scripts)
                                      installed.string(), source.string(), scripts.variable, scripts.folder));
 }
 
+void become_command(const std::string& name, const std::string& about, const std::vector<std::string>& options)
+{
+  const fs::path self = fs::read_symlink("/proc/self/exe");
+  std::string path =
+      find_scripts(self, {.what = "the Python package talus", .variable = "TALUS_PACKAGE", .file = "talus/__main__.py", .folder = "python"})
+          .string();
+  if (const char* before = std::getenv("PYTHONPATH"); before != nullptr && *before != '\0')
+    path += fmt::format(":{}", before);
+  ::setenv("PYTHONPATH", path.c_str(), 1);
+  std::vector<std::string> words{"-P", "-m", "talus", name, about, "--program", self.string()};
+  words.insert(words.end(), options.begin(), options.end());
+  become_python(words);
+}
+
 void become_python(const std::vector<std::string>& words)
 {
   const std::string python = ::access("/usr/bin/python3", X_OK) == 0 ? "/usr/bin/python3" : "python3";

@@ -1,5 +1,5 @@
 #pragma once
-// Reads summary.json: status and origin of a run, and its numbers by name.
+// Reads summary.json: status of a run, and its numbers by name.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,12 +23,5 @@ SummaryBack read_summary(const std::filesystem::path& file);
 
 /// The number of that name, or the only one whose path ends with it, such as "energy.closure" or "plastic".
 const NamedValue* find_number(const std::vector<NamedValue>& numbers, std::string_view name);
-
-struct RunOrigin {
-  std::string status, version, commit, compiler, build, kernel, transfer, threads;  ///< "unknown" if not in the file
-};
-
-/// Throws EnvironmentError with the name of the file if it cannot be read or is not a summary of a run.
-RunOrigin read_origin(const std::filesystem::path& summary);
 
 }  // namespace talus

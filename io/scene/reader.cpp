@@ -13,6 +13,7 @@
 #include <unordered_map>
 
 #include "io/document/document.hpp"
+#include "io/document/document_json.hpp"
 #include "io/document/field_reader.hpp"
 #include "io/scene/accuracy.hpp"
 #include "io/scene/scene_rules.hpp"
@@ -310,20 +311,11 @@ Scene read_scene_text(const std::filesystem::path& file, const std::string& text
   return scene;
 }
 
-std::string written_in_scene(const std::filesystem::path& file, std::span<const std::string> overrides, std::string_view path,
-                             const KeyChoice& keys)
+std::string keys_as_json(const std::filesystem::path& file, std::span<const std::string> overrides)
 {
   const Document document = read_document(file, read_text(file), overrides);
-  const Found found = find_nearest(document.root, path);
-  if (!found.whole)
-    return {};
-  Node there = *found.node;
-  for (auto i = std::ssize(there.keys) - 1; i >= 0; --i)
-    if (!keys.takes(there.keys[static_cast<std::size_t>(i)].text)) {
-      there.keys.erase(there.keys.begin() + i);
-      there.items.erase(there.items.begin() + i);
-    }
-  return in_one_line(there);
+  document.problems.throw_if_any();
+  return in_json(document.root);
 }
 
 std::string with_values(const std::filesystem::path& file, std::string text, std::span<const std::string> overrides)

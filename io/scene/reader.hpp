@@ -1,6 +1,5 @@
 #pragma once
 // Strict reading of a scene file: all errors are found at once, with file, line, column and key.
-#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -19,19 +18,8 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
 /// The scene in a text that was read from `file`.
 Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides = {});
 
-/// A selection of keys of a mapping.
-struct KeyChoice {
-  std::span<const std::string_view> only = {};     ///< if empty, all keys
-  std::span<const std::string_view> without = {};  ///< without these keys
-  bool takes(std::string_view key) const noexcept
-  {
-    const auto names = [&](std::span<const std::string_view> list) { return std::find(list.begin(), list.end(), key) != list.end(); };
-    return (only.empty() || names(only)) && !names(without);
-  }
-};
-/// The value at a path of keys, on one line as an override takes it, with the selected keys of that mapping.  Empty if there is no value.
-std::string written_in_scene(const std::filesystem::path& file, std::span<const std::string> overrides, std::string_view path,
-                             const KeyChoice& keys = {});
+/// All keys of a scene with their changes, as JSON.  Throws SceneErrors if it is no YAML.
+std::string keys_as_json(const std::filesystem::path& file, std::span<const std::string> overrides);
 
 /// The text of a scene with values replaced by overrides; comments stay.  Throws SceneErrors if the text does not contain the key, or if
 /// its value takes several lines.

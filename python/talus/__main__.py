@@ -1,4 +1,4 @@
-"""The commands of the package: python3 -m talus calibrate SPECIFICATION.  The program calls them for `talus calibrate`."""
+"""The commands of the package, such as python3 -m talus calibrate SPECIFICATION.  The program calls them for its commands of these names."""
 from __future__ import annotations
 
 import argparse
@@ -10,8 +10,10 @@ from typing import Any
 
 from .calibration import calibrate, default_folder
 from .calibration.evaluation import Stopped
+from .differences.command import add_diff
 from .errors import EnvironmentFailure, FileError, MissingPackage, ProgramError, RunFailed, SceneError
 from .program import STOPPED
+from .strength_reduction.command import add_fos
 
 _FAILED, _WRONG, _ENVIRONMENT = 1, 2, 3  # exit codes of the program (app/cli/main.cpp)
 
@@ -21,12 +23,11 @@ def main(words: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(words)
     signal.signal(signal.SIGTERM, _interrupt)
     signal.signal(signal.SIGUSR1, _interrupt)
-    out = options.out if options.out is not None else default_folder(options.specification)
     try:
-        result = calibrate(options.specification, out=out, jobs=options.jobs, threads=options.threads, pictures=options.pictures,
-                           program=options.program, tell=None if options.quiet else _tell)
+        return options.run(options)
     except (KeyboardInterrupt, Stopped):
-        return _complain(STOPPED, f"stopped; the same command goes on, with the runs that are done in {out}")
+        runs = f", with the runs that are done in {options.out}" if options.out is not None else ""
+        return _complain(STOPPED, f"stopped; the same command goes on{runs}")
     except SceneError as error:
         return _complain(_WRONG, str(error))
     except RunFailed as error:
@@ -35,12 +36,16 @@ def main(words: Sequence[str] | None = None) -> int:
         return _complain(_ENVIRONMENT, str(error))
     except ProgramError as error:  # killed by a signal, for example
         return _complain(_FAILED, str(error))
-    except FileNotFoundError as error:
-        if error.filename is not None and Path(error.filename) == options.specification:
-            return _complain(_WRONG, f"there is no file {options.specification}")
-        return _complain(_ENVIRONMENT, str(error))
     except (OSError, MissingPackage, FileError) as error:
         return _complain(_ENVIRONMENT, str(error))
+
+
+def _calibrate(options: argparse.Namespace) -> int:
+    options.out = out = options.out if options.out is not None else default_folder(options.specification)
+    if not options.specification.exists():
+        return _complain(_WRONG, f"there is no file {options.specification}")
+    result = calibrate(options.specification, out=out, jobs=options.jobs, threads=options.threads, pictures=options.pictures,
+                       program=options.program, tell=None if options.quiet else _tell)
     print(result)
     print(f"results in {out}: calibration.json, calibration.csv, best.yaml{', calibration.png' if options.pictures else ''}")
     return 0
@@ -59,6 +64,9 @@ def _parser() -> argparse.ArgumentParser:
     one.add_argument("--no-pictures", dest="pictures", action="store_false", help="draw nothing")
     one.add_argument("--quiet", action="store_true", help="only the results")
     one.add_argument("--program", type=Path, metavar="PATH", help="the program talus; default as in talus.find_program")
+    one.set_defaults(run=_calibrate)
+    add_fos(commands)
+    add_diff(commands)
     return parser
 
 

@@ -78,3 +78,12 @@ class RunFailed(ProgramError):
 
 class EnvironmentFailure(ProgramError):
     """A failure of disk, memory or display, or a folder that must not be replaced (exit code 3)."""
+
+
+def located(messages: Sequence[Message]) -> SceneError:
+    """The error of wrong input with these messages, as the program writes them."""
+    lines = []
+    for message in messages:
+        place = ":".join([message.file, *(str(n) for n in (message.line, message.column) if n)] if message.file else [])
+        lines.append(": ".join(part for part in (place, message.kind, message.key, message.text) if part))
+    return SceneError("\n".join(lines), 2, messages)

@@ -83,6 +83,18 @@ def manual(*keys: str, program: str | os.PathLike[str] | None = None) -> str:
     return call(["manual", *keys], program)
 
 
+def facts_of(scene: Path, changes: Sequence[str] = (), *, keys_only: bool = False,
+             program: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+    """What a scene with changes such as "time.end=2" consists of: stages, bodies with their laws and particles, the mesh, all keys.
+
+    keys_only  checks the keys alone: no mesh is made, and particles are left out
+
+    Raises SceneError with the place of each error.
+    """
+    words = [word for change in changes for word in ("--set", change)]
+    return json.loads(call(["check", str(scene), *words, "--json", *(["--keys"] if keys_only else [])], program))
+
+
 def schema(program: str | os.PathLike[str] | None = None) -> dict[str, Any]:
     """The JSON Schema of scenes, for editors and other programs.  `talus.check` is the full check of a scene."""
     return json.loads(call(["manual", "--schema"], program))

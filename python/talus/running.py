@@ -1,6 +1,7 @@
 """Runs of the program: started, followed while they compute, resumed."""
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -8,12 +9,12 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Union
 
-from .program import STOPPED, call, error_of, find_program
+from .program import STOPPED, call, error_of, facts_of, find_program
 from .runs import Run
 from .scenes import HEADING, Scene, set_options, to_yaml, write_scene
 
@@ -102,12 +103,32 @@ def check(scene: Scene, *, set: Mapping[str, Any] | None = None, program: str | 
 
     Raises SceneError, which has the place of each error.
     """
+    with _as_file(scene) as file:
+        return call(["check", str(file), *set_options(set)], program)
+
+
+def facts(scene: Scene, *, set: Mapping[str, Any] | None = None, program: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+    """What a scene consists of, as the program checks it: `stages` by name and type; `bodies` with their laws in each stage, particles,
+    extent along `up` and wave speed; `mesh`; `gravity [m/s^2]`; all `keys` with their changes.  Nothing is written.
+
+    scene, set  as in `run`
+
+    Raises SceneError, which has the place of each error.
+    """
+    with _as_file(scene) as file:
+        return facts_of(file, set_options(set)[1::2], program=program)
+
+
+@contextlib.contextmanager
+def _as_file(scene: Scene) -> Iterator[Path]:
+    """The file of a scene; of a dictionary one that is removed when the block ends."""
     if not isinstance(scene, Mapping):
-        return call(["check", str(scene), *set_options(set)], program)
+        yield Path(scene)
+        return
     with tempfile.NamedTemporaryFile("w", suffix=".yaml", prefix="talus_scene_", encoding="utf-8") as file:
         file.write(HEADING + to_yaml(scene))
         file.flush()
-        return call(["check", file.name, *set_options(set)], program)
+        yield Path(file.name)
 
 
 def default_folder(scene: Scene) -> Path:

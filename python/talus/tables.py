@@ -40,7 +40,12 @@ class Table(Mapping[str, np.ndarray]):
         self.units: dict[str, str] = {}
         for heading in map(_as_text, records[0]):
             name, mark, unit = heading.rpartition(" [")
-            self.units[name if mark else heading] = unit.removesuffix("]") if mark else PURE
+            name = name if mark else heading
+            if name in self.units:
+                columns = [number for number, entry in enumerate(map(_as_text, records[0]), 1)
+                           if (entry.rpartition(" [")[0] or entry) == name]
+                raise Damaged(f'{self.path}: columns {" and ".join(map(str, columns))} are both called "{name}"')
+            self.units[name] = unit.removesuffix("]") if mark else PURE
         for number, record in enumerate(records[1:], 2):
             if len(record) != len(records[0]):
                 raise Damaged(f"{self.path}:{number}: {len(record)} entries for {len(records[0])} columns")

@@ -156,6 +156,19 @@ class Runs(InAFolder):
         self.assertIn("KeyboardInterrupt", complaints)
         self.assertEqual(talus.open("a").status, "stopped")
 
+    def test_facts_are_what_the_program_makes_of_a_scene(self):
+        facts = talus.facts(SCENE, set={"title": "1e3 \"quoted\", [in brackets]", "materials[0].density": 1.5e3})
+        self.assertEqual(facts["title"], '1e3 "quoted", [in brackets]')
+        self.assertEqual(facts["keys"]["title"], facts["title"])
+        self.assertEqual(facts["keys"]["materials"][0]["density"], 1500)
+        body = facts["bodies"][0]
+        self.assertGreater(body["particles"], 0)
+        self.assertGreater(body["highest [m]"], body["lowest [m]"])
+        self.assertEqual(body["stages"][0]["material"], facts["keys"]["materials"][0]["name"])
+        self.assertEqual(facts["scene"]["set"][1], "materials[0].density=1500.0")
+        with self.assertRaises(talus.SceneError):
+            talus.facts(SCENE, set={"materials[0].density": -1})
+
     def test_check_and_manual_are_those_of_the_program(self):
         self.assertRegex(talus.check(SCENE), r"body \"block\": \d+ particles")
         with self.assertRaisesRegex(talus.SceneError, "unknown law \"rubber\""):

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "app/commands/diff/differences.hpp"
 #include "core/error.hpp"
 #include "core/word_match.hpp"
 
@@ -114,8 +114,33 @@ std::optional<MovedMass> moved_mass(const std::vector<Way>& ways, const ReachRul
   return moved;
 }
 
+using RowPairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// The rows of the ids in ascending order.
+std::vector<std::size_t> rows_by_id(const std::vector<std::int64_t>& ids)
+{
+  std::vector<std::size_t> rows(ids.size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::ranges::sort(rows, {}, [&](std::size_t row) { return ids[row]; });
+  return rows;
+}
+
+/// The rows of the ids that both lists have, in ascending order of the ids.
+RowPairs common_rows(const std::vector<std::int64_t>& a, const std::vector<std::int64_t>& b)
+{
+  const std::vector<std::size_t> rows_a = rows_by_id(a), rows_b = rows_by_id(b);
+  RowPairs pairs;
+  for (std::size_t i = 0, j = 0; i < rows_a.size() && j < rows_b.size();)
+    if (a[rows_a[i]] == b[rows_b[j]])
+      pairs.emplace_back(rows_a[i++], rows_b[j++]);
+    else
+      ++(a[rows_a[i]] < b[rows_b[j]] ? i : j);
+  return pairs;
+}
+
 /// The survey of the rows of body `b`, or of all.
-MassSurvey survey_of(const Looked& looked, const Pairs& common, const RunSurvey& run, std::optional<std::size_t> b, const SurveyTask& task)
+MassSurvey survey_of(const Looked& looked, const RowPairs& common, const RunSurvey& run, std::optional<std::size_t> b,
+                     const SurveyTask& task)
 {
   const auto belongs = [&](std::size_t row) { return !b || (row < looked.body.size() && looked.body[row] == static_cast<Real>(*b)); };
   const auto runs_out = [&](std::size_t row) {
@@ -144,7 +169,7 @@ MassSurvey survey_of(const Looked& looked, const Pairs& common, const RunSurvey&
     mass.speed = speed;
   std::vector<Way> ways;
   std::optional<Real> furthest;
-  for (const auto& [first, row] : common.both)
+  for (const auto& [first, row] : common)
     if (belongs(row)) {
       const Vec3 now = place(looked.places, row), in_first_frame = place(run.places, first);
       furthest = std::max(furthest.value_or(0), (now - in_first_frame).norm());
@@ -222,7 +247,7 @@ FrameSurvey survey_of(Real time, const fs::path& file, const SurveyTask& task, R
   Looked looked{particles.fields.front().values, stored_field(particles, "velocity"), stored_field(particles, "displacement"), {}};
   if (const StoredField* body = stored_field(particles, "body"))
     looked.body = body->values;
-  const Pairs common = match_ids(survey.ids, particles.ids);
+  const RowPairs common = common_rows(survey.ids, particles.ids);
   frame.masses.push_back(survey_of(looked, common, survey, std::nullopt, task));
   for (std::size_t b = 0; task.bodies > 1 && b < task.bodies; ++b)
     frame.masses.push_back(survey_of(looked, common, survey, b, task));
