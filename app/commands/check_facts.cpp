@@ -39,7 +39,8 @@ FactsOfBody body_of(const Scene& scene, const BodySpec& body)
 {
   FactsOfBody facts{.name = body.name, .where = body.where, .stages = {}};
   const Presence presence = presence_of(body.name, scene.stages);
-  for (Index stage = 0; stage < std::max<Index>(1, std::ssize(scene.stages)); ++stage)
+  const auto stages = std::max<Index>(1, static_cast<Index>(scene.stages.size()));
+  for (Index stage = 0; stage < stages; ++stage)
     facts.stages.push_back(presence.in(stage) ? std::optional(law_of(scene, body, stage)) : std::nullopt);
   return facts;
 }
@@ -62,13 +63,12 @@ SceneFacts facts_of(const Scene& scene)
   return facts;
 }
 
-/// Adds the particles of a body in a set of particles.
-template <int D>
-void add_particles(const ParticleSet<D>& set, std::size_t number, const Vec<D>& up, FactsOfBody& facts)
+/// Adds the particles of a body, at some positions [m].
+template <class Positions, class Direction>
+void add_rows(const Body& body, const Positions& x, const Direction& up, FactsOfBody& facts)
 {
-  const Body& body = set.bodies[number];
   for (Index row = body.begin; row < body.end; ++row) {
-    const Real at = up.dot(set.particles.x[static_cast<std::size_t>(row)]);
+    const Real at = up.dot(x[static_cast<std::size_t>(row)]);
     facts.lowest = facts.particles == 0 ? at : std::min(facts.lowest, at);
     facts.highest = facts.particles == 0 ? at : std::max(facts.highest, at);
     ++facts.particles;
@@ -86,10 +86,10 @@ void add_model(const Scene& scene, SceneFacts& facts)
   const Vec<D> up = upright_of(scene).template head<D>();
   for (std::size_t b = 0; b < facts.bodies.size(); ++b) {
     facts.bodies[b].wave_speed = setup.state.materials[b].law().wave_speed(Mat3::Identity());
-    add_particles<D>(setup.state, b, up, facts.bodies[b]);
+    add_rows(setup.state.bodies[b], setup.state.particles.x, up, facts.bodies[b]);
     for (const StageChange<D>& change : setup.changes)
       if (std::ranges::find(change.appear, static_cast<Index>(b)) != change.appear.end())
-        add_particles<D>(change.coming, b, up, facts.bodies[b]);
+        add_rows(change.coming.bodies[b], change.coming.particles.x, up, facts.bodies[b]);
   }
 }
 
