@@ -6,6 +6,7 @@ Usage: sweep_test.py PROGRAM, the built talus.  Tests of the command are in test
 import math
 import os
 import sys
+import time
 import unittest
 import unittest.mock
 from pathlib import Path
@@ -276,14 +277,20 @@ class Parts(InAFolder):
             self.write("out/summary.json", text)
             self.assertIn(why, state_of(run).why)
 
-    def test_a_queue_waits_for_its_runs_when_it_is_left(self):
-        def fail(_):
-            raise OSError("the disk is full")
-        script = self.write("slow", "#!/bin/sh\nsleep 0.1\n")
+    def test_a_queue_that_breaks_off_ends_its_runs_and_waits_for_them(self):
+        began, ended = self.folder / "began", self.folder / "ended"
+        script = self.write("slow", f"#!/bin/sh\ntrap 'sleep 0.2; touch {ended}; exit 4' TERM\ntouch {began}\nsleep 20 & wait\n")
         script.chmod(0o755)
-        queue = RunQueue([("run", PlannedRun(Path("scene.yaml"), [], self.folder / "out"))], fail, script, Share(1, 1))
-        with self.assertRaises(OSError):
+
+        def fail(line):
+            while not began.exists():
+                time.sleep(0.01)
+            raise OSError(line)
+        runs = [("run 1", PlannedRun(Path("scene.yaml"), [], self.folder / "out"))]
+        queue = RunQueue(runs, lambda _: RunState(), script, Share(1, 1), tell=fail)
+        with self.assertRaisesRegex(OSError, "run 1: begins"):
             queue([0])
+        self.assertTrue(ended.exists())
 
 
 class Sweeps(Studies):
