@@ -14,7 +14,7 @@ concept HasStrength = requires(L law, Real factor)
 
 /// Divides the shear strength of a law by `factor` > 0; what its particles remember stays.  False, and no change, if the law has none.
 template <class L>
-bool divide_strength(L& law, Real factor)
+bool divide_strength(L& law, Real factor) noexcept
 {
   if constexpr (HasStrength<L>)
     law.divide_strength(factor);

@@ -45,26 +45,27 @@ class Opener {
     const auto library = library_of(law);
     if (!library)
       return;
+    std::shared_ptr<const OwnLawCode> code;
     attempt("symbol", [&] {
       using Describe = const talus_law* (*)();
       const auto describe = reinterpret_cast<Describe>(library->function(law.symbol));
       const talus_law* const described = describe();
       if (described == nullptr)
         throw Error(fmt::format("the function {} of {} returned no law", law.symbol, law.library));
-      law.code = std::make_shared<const OwnLawCode>(*described, OwnLawOrigin{law.library, library->digest(), {}});
-      check_names(law.code->description());
+      code = std::make_shared<const OwnLawCode>(*described, OwnLawOrigin{law.library, library->digest(), {}});
+      check_names(code->description());
     });
     if (!findings_.empty())
       return;
-    OwnLawValues values = values_of(*law.code, law.parameters);
+    OwnLawValues values = values_of(*code, law.parameters);
     for (const OwnLawProblem& problem : values.problems)
       add(problem.name.empty() ? "parameters" : "parameters." + problem.name, problem.message);
     if (!findings_.empty())
       return;
     law.parameters.all.clear();
     for (std::size_t i = 0; i < values.values.size(); ++i)
-      law.parameters.all.push_back({law.code->parameters()[i].key, values.values[i]});
-    attempt("parameters", [&] { law.opened = own_law(law.code, std::move(values.values), law.density, law.serial); });
+      law.parameters.all.push_back({code->parameters()[i].key, values.values[i]});
+    attempt("parameters", [&] { law.opened = own_law(code, std::move(values.values), law.density, law.serial); });
   }
   void open(UmatLaw& law)
   {

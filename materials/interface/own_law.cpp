@@ -2,21 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "materials/interface/own_law_code.hpp"
+#include <utility>
 
 namespace talus {
-
-void LawBySymbol::divide_strength(Real factor)
-{
-  if (!code || code->law().weaken == nullptr)
-    return;
-  std::vector<Real> values;
-  for (const NamedNumber& one : parameters.all)
-    values.push_back(one.value);
-  values = weakened_values(*code, std::move(values), factor);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    parameters.all[i].value = values[i];
-}
 
 void UmatLaw::check(std::vector<std::string>& problems) const
 {

@@ -31,8 +31,6 @@ constexpr auto library_fields()
                                         "the library is called by one thread at a time: for code that writes to global variables")};
 }
 
-class OwnLawCode;  // own_law_code.hpp
-
 /// A law behind talus_law.h.
 struct LawBySymbol : LawInLibrary {
   static constexpr std::string_view name = "own";
@@ -40,7 +38,6 @@ struct LawBySymbol : LawInLibrary {
       "A law of your own: a shared library with the C interface talus_law.h, which says what parameters and history it has.";
   std::string symbol;
   NamedNumbers parameters;
-  std::shared_ptr<const OwnLawCode> code{};  ///< set with `opened`
   static constexpr auto fields()
   {
     using Law = LawBySymbol;
@@ -48,8 +45,6 @@ struct LawBySymbol : LawInLibrary {
                           std::tuple{required("symbol", &Law::symbol, any, "-", "function of the library that returns the law"),
                                      optional("parameters", &Law::parameters, any, "-", "parameters of the law by their names")});
   }
-  /// Of a law that was opened and has a function for it.  Throws Error if that fails.
-  void divide_strength(Real factor);
 };
 
 /// The subroutine UMAT of Abaqus/Standard behind the same interface.
