@@ -25,6 +25,7 @@ struct IncrementOf {
   /// Plastic strain at which the strength softens, constant in the step; without it that of the history, which grows in the step.  See
   /// softening_length.hpp.
   const T* softened_at = nullptr;
+  Real time = 0;  ///< at the end of the step [s]
 };
 using Increment = IncrementOf<Real>;
 

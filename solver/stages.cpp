@@ -33,7 +33,12 @@ std::string describe(const Model<D>& m, const ParticleErrors::Finding& finding)
     case Trouble::inverted:
       return fmt::format("{} turned inside out, det F = {:.4g}; refine the mesh there, take more particles per cell or a smaller time.cfl",
                          who, J);
-    case Trouble::no_answer: return fmt::format("the law of {} returned no finite stress, det F = {:.4g}", who, J);
+    case Trouble::no_answer: {
+      const ConstitutiveLaw& law = m.state.materials[static_cast<std::size_t>(body_of(m.state.bodies, row))].law();
+      if (const std::string complaint = law.complaint(finding.id); !complaint.empty())
+        return fmt::format("law {}: {} ({})", law.name(), complaint, who);
+      return fmt::format("the law {} of {} returned no finite stress, det F = {:.4g}", law.name(), who, J);
+    }
     case Trouble::not_finite: break;
   }
   return fmt::format("{} has a position, velocity or deformation that is not finite; the step may be too long (time.cfl)", who);

@@ -28,6 +28,16 @@ void take_slice(std::int64_t first, std::int64_t end, std::vector<Body>& bodies)
   }
 }
 
+/// A law of the user from another library than that of the checkpoint goes on with the history of that one: its author has to know whether it can.
+void warn_of_library(const ArrayReader& file, std::size_t b, const std::string& body, const ConstitutiveLaw& law)
+{
+  if (const std::string digest = law.library_digest(); !digest.empty() && world().is_root())
+    if (const std::string there = file.text(below("laws/library", b)); there != digest)
+      fmt::print(stderr,
+                 "warning: body \"{}\" goes on with another library: the law {} has the digest {}, and that of the checkpoint had {}\n",
+                 body, law.name(), digest, there);
+}
+
 void recall_laws(const ArrayReader& file, const std::vector<Body>& in_file, const std::vector<Body>& here, std::int64_t first,
                  std::vector<Material>& materials)
 {
@@ -36,6 +46,7 @@ void recall_laws(const ArrayReader& file, const std::vector<Body>& in_file, cons
     if (const std::string name = file.text(below("laws/name", b)); name != materials[b].law().name())
       throw EnvironmentError(
           fmt::format("the law of body \"{}\" is {} there and {} in the scene", body.name, name, materials[b].law().name()));
+    warn_of_library(file, b, body.name, materials[b].law());
     materials[b].set_range(body);
     const Slice rows = rows_of_body(all, body, {first});
     recall_history(file, history_of(b), static_cast<std::size_t>(rows.first), static_cast<std::size_t>(all.size()), materials[b]);

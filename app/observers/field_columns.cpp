@@ -59,12 +59,15 @@ std::optional<Column> column_of_table(const Table& table, std::string_view name,
 /// The checks of scenes let no other name through.
 [[noreturn]] void no_such_field(std::string_view name) { throw std::invalid_argument(fmt::format("there is no field \"{}\"", name)); }
 
-/// Of a law in the list `Laws`, which need not be that of a body yet: stages change materials.  All laws give a variable one kind and unit.
+/// Of any law of the run, which need not be that of a body yet: stages change materials.  All laws give a variable one kind and unit.
 template <int D>
-Column history_column(const State<D>& state, std::span<const Index> rows, std::string_view name)
+Column history_column(const Problem<D>& problem, const State<D>& state, std::span<const Index> rows, std::string_view name)
 {
   Column column{std::string(name), 0, {}, ""};
-  for (const LawDescription* law : known_laws())
+  std::vector<const LawDescription*> laws = known_laws();
+  for (const auto& law : problem.laws_of_user)
+    laws.push_back(&law->description());
+  for (const LawDescription* law : laws)
     for (const HistoryVariable& variable : law->variables)
       if (variable.key == name)
         column.components = variable.components, column.unit = unit_in(D, variable.unit);
@@ -105,7 +108,7 @@ Column particle_column(const Problem<D>& problem, const State<D>& state, std::sp
     const State<D>& state;
   } const of{problem, state};
   std::optional<Column> column = column_of_table<D>(particle_fields(), name, of, rows);
-  return column ? *std::move(column) : history_column(state, rows, name);
+  return column ? *std::move(column) : history_column(problem, state, rows, name);
 }
 
 template <int D>

@@ -46,8 +46,11 @@ KeptArrays rest_of(const State<D>& state, const std::vector<Body>& in_file, cons
     else if constexpr (!is_of_particles<Part>)
       save(rest, name, part);
   });
-  for (std::size_t b = 0; b < in_file.size(); ++b)
+  for (std::size_t b = 0; b < in_file.size(); ++b) {
     save(rest, below("laws/name", b), std::string(state.materials[b].law().name()));
+    if (const std::string digest = state.materials[b].law().library_digest(); !digest.empty())
+      save(rest, below("laws/library", b), digest);
+  }
   save(rest, "recorder", recorder);
   return rest;
 }

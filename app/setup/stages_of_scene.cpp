@@ -243,6 +243,9 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
   const std::size_t n = setup.stages.size();
   setup.changes.resize(n);
   setup.laws = laws_of_stages(scene);
+  for (const MaterialSpec& material : scene.materials)
+    if (const auto law = material.law.model(); !law->library_digest().empty())
+      setup.conditions.laws_of_user.push_back(law);
   const auto said = [&](std::size_t s) -> const StageChanges& { return changes_of(scene.stages[s]); };
   const bool bodies_differ = std::ranges::any_of(
       scene.stages, [](const StageSpec& stage) { return !changes_of(stage).appear.empty() || !changes_of(stage).vanish.empty(); });

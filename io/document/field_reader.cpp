@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/named_numbers.hpp"
 #include "core/time_table.hpp"
 #include "core/word_match.hpp"
 #include "io/document/key_aliases.hpp"
@@ -112,6 +113,7 @@ void FieldReader::read(const Node& node, const std::string& path, const Asked& a
     case ValueType::Kind::word: return read_word(node, path, type, value);
     case ValueType::Kind::table: return read_table(node, path, as<Table>(value));
     case ValueType::Kind::node: return read_node(node, path, as<Node>(value));
+    case ValueType::Kind::named: return read_named(node, path, as<NamedNumbers>(value));
     case ValueType::Kind::list: return read_list(node, path, asked, type, value);
     case ValueType::Kind::optional: type.resize(value, 1); return read(node, path, asked, *type.entry, type.edit_at(value, 0));
     case ValueType::Kind::mapping:
@@ -168,6 +170,16 @@ void FieldReader::read_node(const Node& node, const std::string& path, Node& val
 {
   if (is(node.kind == Node::Kind::empty ? Node::Kind::scalar : node.kind, node, path, "a value"))
     value = node;
+}
+
+void FieldReader::read_named(const Node& node, const std::string& path, NamedNumbers& numbers)
+{
+  if (!is(Node::Kind::mapping, node, path, "a mapping {name: number}"))
+    return;
+  for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    NamedNumber& one = numbers.all.emplace_back(NamedNumber{node.keys[i].text, 0});
+    read(node.items[i], path_to(path, one.name), one.value);
+  }
 }
 
 void FieldReader::read_mapping(const Node& node, const std::string& path, const ValueType& type, void* value)

@@ -9,6 +9,7 @@
 namespace talus {
 
 class Mapping;
+struct NamedNumbers;
 struct Table;
 
 /// Reads values by their type.  Nothing is thrown: errors are collected, and a wrong value keeps its default.  Of a struct every field is
@@ -32,6 +33,7 @@ class FieldReader {
   void read_list(const Node& node, const std::string& path, const Asked& asked, const ValueType& type, void* list);
   void read_table(const Node& node, const std::string& path, Table& table);
   void read_node(const Node& node, const std::string& path, Node& value);
+  void read_named(const Node& node, const std::string& path, NamedNumbers& numbers);
   void read_mapping(const Node& node, const std::string& path, const ValueType& type, void* value);
   void read_fields(Mapping& mapping, const StructType& type, void* object);
   void read_choice(Mapping& mapping, std::string_view key, const ValueType& type, void* value);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/named_numbers.hpp"
 #include "core/time_table.hpp"
 #include "io/document/document.hpp"
 #include "io/document/value_type.hpp"
@@ -101,6 +102,8 @@ ValueType make_value_type()
     return {.kind = Kind::table};
   else if constexpr (std::same_as<T, Node>)
     return {.kind = Kind::node};
+  else if constexpr (std::same_as<T, NamedNumbers>)
+    return {.kind = Kind::named};
   else if constexpr (std::is_enum_v<T>)
     return type_of_words<T>();
   else if constexpr (is_list<T>)

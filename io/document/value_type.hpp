@@ -28,6 +28,7 @@ struct ValueType {
     mapping,       ///< a struct with fields()
     choice,        ///< one of several structs: what choices_of() takes
     node,          ///< Node: any value, as it is written
+    named,         ///< NamedNumbers: a mapping of numbers
   };
   Kind kind;
   std::span<const std::string_view> words{};     ///< word: all of them, in the order of the enumerators

@@ -16,6 +16,7 @@
 #include "io/document/document_json.hpp"
 #include "io/document/field_reader.hpp"
 #include "io/scene/accuracy.hpp"
+#include "io/scene/law_libraries.hpp"
 #include "io/scene/scene_rules.hpp"
 #include "materials/interface/law_variant.hpp"
 
@@ -292,16 +293,20 @@ void add_findings(Document& document, const std::vector<Finding>& findings)
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides)
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides, Libraries libraries)
 {
-  return read_scene_text(file, read_text(file), overrides);
+  return read_scene_text(file, read_text(file), overrides, libraries);
 }
 
-Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides)
+Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides,
+                      Libraries libraries)
 {
   Document document = read_document(file, plain_text(file, text), overrides);
   Scene scene;
   FieldReader(document.problems).read(document.root, "", scene);
+  if (libraries == Libraries::opened)
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+      add_findings(document, open_library(file, fmt::format("materials[{}]", i), scene.materials[i].law));
   add_findings(document, broken_rules(scene));
   document.problems.throw_if_any();
   settle_accuracy(scene);
@@ -355,6 +360,7 @@ PointTest read_point_path(const std::filesystem::path& file, std::span<const std
   Document document = read_document(file, read_text(file), overrides);
   PointTest test;
   FieldReader(document.problems).read(document.root, "", test);
+  add_findings(document, open_library(file, "material", test.material.law));
   document.problems.throw_if_any();
   return test;
 }

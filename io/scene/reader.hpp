@@ -9,13 +9,17 @@
 
 namespace talus {
 
+/// Whether the libraries of laws are opened.  A scene that is only looked at, such as that of results, needs no library, and runs no code.
+enum class Libraries : std::uint8_t { opened, closed };
+
 /// The scene in a YAML file, changed by overrides such as "time.end=2" or "bodies[0].particles_per_cell=6" (from --set).  The result
 /// satisfies all rules that do not need the mesh.  Otherwise throws SceneErrors with all errors, sorted by position; the file of an error
 /// in an override is its text, such as `--set time.end=2x`.  A subset of YAML is read: no anchors, aliases, merge keys or tags, one
 /// document, decimal numbers, `true` and `false`.
-Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {}, Libraries libraries = Libraries::opened);
 /// The scene in a text that was read from `file`.
-Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides = {});
+Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides = {},
+                      Libraries libraries = Libraries::opened);
 
 /// All keys of a scene with their changes, as JSON.  Throws SceneErrors if it is no YAML.
 std::string keys_as_json(const std::filesystem::path& file, std::span<const std::string> overrides);

@@ -26,11 +26,14 @@ class OutputRules : private SceneRuleBase {
   {
     const OutputSpec& outputs = scene_.outputs;
     const std::vector<ParticleField> of_particles = fields_of_particles();
-    if (outputs.particles)
+    // Of a law whose library is not open no field is known.
+    const bool all_known = std::ranges::all_of(scene_.materials, [](const MaterialSpec& one) { return one.law.is_open(); });
+    if (outputs.particles && all_known)
       known_words("outputs.particles.fields", "field", outputs.particles->fields_wanted, names(of_particles));
     if (outputs.mesh)
       known_words("outputs.mesh.fields", "field", outputs.mesh->fields_wanted, names_of(node_fields()));
-    picture(outputs.picture.field, of_particles);
+    if (all_known)
+      picture(outputs.picture.field, of_particles);
     if (outputs.history)
       history(*outputs.history);
     if (outputs.runout)

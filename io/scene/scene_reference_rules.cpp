@@ -35,7 +35,7 @@ class ReferenceRules : private SceneRuleBase {
   {
     const auto does = [&](const std::string& name) {
       const auto material = std::ranges::find(scene_.materials, name, &MaterialSpec::name);
-      return material != scene_.materials.end() && does_it(*material->law.model());
+      return material != scene_.materials.end() && material->law.is_open() && does_it(*material->law.model());
     };
     return does(body.material) || std::ranges::any_of(scene_.stages, [&](const StageSpec& stage) {
              return std::ranges::any_of(changes_of(stage).change,

@@ -1,19 +1,69 @@
 #include "materials/interface/any_law.hpp"
 
+#include <fmt/format.h>
+
+#include "core/error.hpp"
 #include "materials/interface/law_variant.hpp"
 
 namespace talus {
+
+namespace {
+
+/// Of a law whose library is not open.
+template <class L>
+const LawDescription& description_of_closed() noexcept
+{
+  static const LawDescription description{.name = L::name,
+                                          .summary = L::summary,
+                                          .variables = {},
+                                          .history_width = 0,
+                                          .starts_from_stress = false,
+                                          .has_strength = false,
+                                          .is_isochoric = false,
+                                          .is_fluid = false};
+  return description;
+}
+
+}  // namespace
 
 AnyLaw::AnyLaw() : law_(std::make_shared<LawVariant>()) {}
 
 const LawDescription& AnyLaw::description() const noexcept
 {
-  return std::visit([]<class L>(const L&) -> const LawDescription& { return law_description<L>(); }, law_->of);
+  return std::visit(
+      []<class L>(const L& law) -> const LawDescription& {
+        if constexpr (is_in_library<L>)
+          return law.opened ? law.opened->description() : description_of_closed<L>();
+        else
+          return law_description<L>();
+      },
+      law_->of);
+}
+
+bool AnyLaw::is_open() const noexcept
+{
+  return std::visit(
+      []<class L>(const L& law) {
+        if constexpr (is_in_library<L>)
+          return law.opened != nullptr;
+        else
+          return true;
+      },
+      law_->of);
 }
 
 std::shared_ptr<const ConstitutiveLaw> AnyLaw::model() const
 {
-  return std::visit([](const auto& law) { return constitutive_law(law); }, law_->of);
+  return std::visit(
+      []<class L>(const L& law) -> std::shared_ptr<const ConstitutiveLaw> {
+        if constexpr (!is_in_library<L>)
+          return constitutive_law(law);
+        else if (law.opened)
+          return law.opened;
+        else
+          throw Error(fmt::format("the library {} of a law has not been opened", law.library));
+      },
+      law_->of);
 }
 
 LawVariant& AnyLaw::edit_parameters()

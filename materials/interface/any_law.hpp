@@ -21,7 +21,9 @@ class AnyLaw {
   /// With all the history that the law can have, whatever the parameters.
   const LawDescription& description() const noexcept;
   std::string_view name() const noexcept { return description().name; }
-  /// Of the kind that the parameters ask for.
+  /// False for a law of the user whose library has not been opened: nothing is known of it, and it has no model.
+  bool is_open() const noexcept;
+  /// Of the kind that the parameters ask for.  Throws Error for a law that is not open.
   std::shared_ptr<const ConstitutiveLaw> model() const;
 
   const LawVariant& parameters() const noexcept { return *law_; }

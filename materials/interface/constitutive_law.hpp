@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "materials/interface/history_rows.hpp"
 #include "materials/interface/stress_strip.hpp"
@@ -82,6 +83,11 @@ class ConstitutiveLaw {
   virtual std::optional<Real> shear_modulus() const noexcept = 0;  ///< elastic one at rest [Pa], of laws that have it
   virtual std::optional<HeatConduction> heat() const noexcept = 0;
   virtual std::optional<StrainAveraging> strain_averaging() const noexcept = 0;
+
+  /// Of a law of the user: what it said of the particle `id` when it had no answer, once.
+  virtual std::string complaint(std::int64_t /*id*/) const { return {}; }
+  /// Of a law of the user: the digest of its library.
+  virtual std::string library_digest() const { return {}; }
 
  private:
   const LawDescription& description_;  ///< constant, of the type of the law

@@ -7,43 +7,13 @@
 
 #include "core/strip_column.hpp"
 #include "core/type_list.hpp"
-#include "materials/interface/material.hpp"
+#include "materials/interface/stress_pack.hpp"
 #include "materials/strength.hpp"
 #include "materials/weakly_compressible.hpp"
 
 namespace talus {
 
 namespace detail {
-/// The in-plane part of a multiplied by s, in 3-D all of it.
-template <int D>
-Mat3Of<SimdReal> scaled_in_plane(Mat3Of<SimdReal> a, const SimdReal& s) noexcept
-{
-  a.topLeftCorner<D, D>() *= s;
-  return a;
-}
-
-/// StressSums, one particle per lane.
-struct StressLanes {
-  SimdReal work = 0, crossing = std::numeric_limits<Real>::infinity(), speed = 0;
-  StressSums total() const noexcept
-  {
-    StressSums sums{sum(work.of)};
-    for (int lane = 0; lane < pack_size; ++lane)
-      sums.crossing = std::min(sums.crossing, crossing[lane]), sums.speed = std::max(sums.speed, speed[lane]);
-    return sums;
-  }
-};
-
-/// a : L, with L in the plane where D is 2.
-template <int D>
-SimdReal stress_power(const Sym3Of<SimdReal>& a, const MatOf<D>& L) noexcept
-{
-  SimdReal power = a[0] * L(0, 0) + a[1] * L(1, 1) + a[3] * (L(0, 1) + L(1, 0));
-  if constexpr (D == 3)
-    power += a[2] * L(2, 2) + a[4] * (L(1, 2) + L(2, 1)) + a[5] * (L(0, 2) + L(2, 0));
-  return power;
-}
-
 /// Where each history variable of a law stands in a row.
 template <class State>
 auto variables_of()
@@ -230,69 +200,12 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   [[gnu::flatten]] void update_pack(const Material& material, const StressStrip<D>& strip, std::size_t i,
                                     detail::StressLanes& sums) const noexcept
   {
-    const Real dt = strip.dt;
-    const int count = static_cast<int>(std::min<std::size_t>(pack_size, strip.n - i));
-    const auto report = [&](int lane, Trouble trouble) { strip.errors->report(strip.id[i + static_cast<std::size_t>(lane)], trouble); };
-    const auto rate = strip.L.load(i);
-    const Mat3Of<SimdReal> velocity_gradient = embed(rate);
-    Mat3Of<SimdReal> F = strip.F.load(i);
-    F.template topLeftCorner<D, D>() += SimdReal(dt) * (rate * F.template topLeftCorner<D, D>());
-    strip.F.store(i, F);
-    const SimdReal J = F.determinant();
-    const auto good = J > 0;  // false for NaN
-    if (!all_of(good))
-      for (int lane = 0; lane < count; ++lane)
-        if (!good[lane])
-          report(lane, std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
-    const SimdReal volume_before = strip.volume.load(i), volume = J * strip.volume0.load(i);
-    strip.volume.store(i, volume);
-    const SimdReal shrinking = max(-SimdReal(rate.trace()), 0);
-    const SimdReal h = strip.altitude.load(i);
-
-    const Sym3Of<SimdReal> stored = strip.stress.load(i);
-    Mat3Of<SimdReal> F_of_law = F, L_of_law = velocity_gradient, stress_of_law = unpack(stored);
-    if (material.averages_volume) {
-      const SimdReal to_average = strip.averaged.load(i) / J, ratio = D == 2 ? sqrt(to_average) : pow(to_average, Real{1} / D);
-      const SimdReal s = ratio / strip.volume_ratio.load(i);
-      strip.volume_ratio.store(i, ratio);
-      F_of_law = detail::scaled_in_plane<D>(F, ratio);
-      L_of_law = detail::scaled_in_plane<D>(velocity_gradient, s);
-      for (int d = 0; d < D; ++d)
-        L_of_law(d, d) += (s - 1) / dt;
-    }
-    StateLanes<State> states{strip.history.first + i, strip.history.stride, count};
-    const SimdReal speed_of_waves = wave_speed(F_of_law, states);
-    SimdReal q = 0;
-    if (material.viscosity) {
-      stress_of_law.diagonal().array() += strip.viscous.load(i);
-      q = strip.mass.load(i) / volume * h * shrinking *
-          (material.viscosity->quadratic * h * shrinking + material.viscosity->linear * speed_of_waves);
-      strip.viscous.store(i, q);
-    }
-    SimdReal u = 0;
-    if (strip.pore_after) {
-      stress_of_law.diagonal().array() += strip.pore.load(i);
-      u = strip.pore_after.load(i);
-      strip.pore.store(i, u);
-    }
-    Mat3Of<SimdReal> after = update({F_of_law, L_of_law, stress_of_law, dt, q, strip.elastic}, states);
-    after.diagonal().array() -= q + u;
-    const Sym3Of<SimdReal> stress = talus::pack(after);
-    const auto answered = isfinite(SimdReal(stress.sum()));
-    if (!all_of(answered))
-      for (int lane = 0; lane < count; ++lane)
-        if (good[lane] && !answered[lane])
-          report(lane, Trouble::no_answer);
-    strip.stress.store(i, stress);
-
-    const SimdReal work =
-        0.5 * dt * (volume_before * detail::stress_power<D>(stored, rate) + volume * detail::stress_power<D>(stress, rate));
-    const SimdReal speed = sqrt(SimdReal(strip.v.load(i).squaredNorm()));
-    const SimdReal crossing = crossing_time<D>(diffusivity(), material.viscosity, h, speed, speed_of_waves, shrinking);
-    const auto sound = good && answered, counts = sound && SimdReal(Pack{0, 1, 2, 3}) < static_cast<Real>(count);
-    sums.work += where(counts, work, 0);  // lanes beyond the last particle
-    sums.crossing = where(counts, min(sums.crossing, crossing), sums.crossing);
-    sums.speed = where(counts, max(sums.speed, speed), sums.speed);
+    detail::StressPack<D> particles(material, strip, i);
+    StateLanes<State> states{strip.history.first + i, strip.history.stride, particles.count};
+    const SimdReal speed_of_waves = wave_speed(particles.F, states);
+    particles.find_pressures(material, strip, speed_of_waves);
+    const Mat3Of<SimdReal> after = update({particles.F, particles.L, particles.stress, strip.dt, particles.q, strip.elastic}, states);
+    particles.take(after, material, strip, diffusivity(), speed_of_waves, sums);
   }
 
   L law_;

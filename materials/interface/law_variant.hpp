@@ -3,12 +3,13 @@
 
 #include "core/type_list.hpp"
 #include "materials/interface/any_law.hpp"
+#include "materials/interface/own_law.hpp"
 #include "materials/laws.hpp"
 
 namespace talus {
 
 struct LawVariant {
-  variant_of<Laws, std::type_identity_t> of;
+  variant_of<decltype(joined(Laws{}, LawsInLibraries{})), std::type_identity_t> of;
 };
 
 template <class L>

@@ -32,7 +32,8 @@ struct StressStrip {
   std::size_t n = 0;     ///< particles
   Real dt = 0;           ///< [s]
   bool elastic = false;  ///< a stage that suspends yielding
-  StripColumn<Vec<D>> v{};
+  Real time = 0;         ///< at the end of the step [s]
+  StripColumn<Vec<D>> x{}, v{};
   StripColumn<Mat<D>> L{};
   StripColumn<Mat3> F{};
   StripColumn<Sym3> stress{};

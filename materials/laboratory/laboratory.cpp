@@ -122,7 +122,7 @@ std::vector<ClosedForm> forms(const MohrCoulomb& law, const TestPlan& plan, Real
 std::vector<ClosedForm> forms(const ModifiedCamClay& law, const TestPlan& plan, Real)
 {
   const Real M = law.critical_state_slope, P = plan.pressure;
-  const auto form = [&](Real stress) { return std::vector<ClosedForm>{{std::string(law.name) + ", critical state", stress}}; };
+  const auto form = [](Real stress) { return std::vector<ClosedForm>{{fmt::format("{}, critical state", ModifiedCamClay::name), stress}}; };
   switch (plan.test) {
     case Laboratory::triaxial_compression: return form(3 * M * P / (3 - M));
     case Laboratory::triaxial_extension: return form(3 * M * P / (3 + M));

@@ -26,6 +26,7 @@ Real norm_of(const Unknowns& x)
 struct PointState {
   Mat3 F = Mat3::Identity(), stress = Mat3::Zero();
   std::vector<Real> history{};
+  Real time = 0;
 };
 
 /// One step of a path: finds the strain increments of the components whose stress is prescribed.
@@ -83,7 +84,7 @@ class StepSolver {
       if (!improve(state, target, dt, x, residual, end, end.stress.norm() / stiffness))
         break;
     if (!end.stress.allFinite())
-      return "the law has no answer";
+      return no_answer_of_law();
     if (!good_enough())
       return unreachable(residual, target);
     state = end;
@@ -100,7 +101,10 @@ class StepSolver {
     }
     PointState to = from;
     to.F += H * from.F;
-    to.stress = law_.update(Increment{to.F, H / dt, from.stress, dt, 0, false}, to.history.data());
+    to.time += dt;
+    to.stress =
+        law_.update(Increment{.F = to.F, .L = H / dt, .stress = from.stress, .dt = dt, .viscous = 0, .elastic = false, .time = to.time},
+                    to.history.data());
     if (const auto averaging = law_.strain_averaging())  // one point stands for a body that deforms evenly
       to.history[static_cast<std::size_t>(averaging->mean)] = to.history[static_cast<std::size_t>(averaging->strain)];
     return to;
@@ -140,6 +144,12 @@ class StepSolver {
       }
     }
     return false;
+  }
+
+  std::string no_answer_of_law() const
+  {
+    const std::string complaint = law_.complaint(-1);
+    return complaint.empty() ? "the law has no answer" : complaint;
   }
 
   std::string unreachable(const Unknowns& residual, const Sym3& target) const

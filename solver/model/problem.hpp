@@ -1,6 +1,8 @@
 #pragma once
 // Data that no step changes: the mesh and its part on this rank, loads, limits and options.  Stages may change them between two steps.
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/nonlinear_solver.hpp"
 #include "core/parallel/communicator.hpp"
@@ -20,6 +22,8 @@
 #include "solver/state/owned_nodes.hpp"
 
 namespace talus {
+
+class ConstitutiveLaw;
 
 /// Optional columns of particles.
 struct WantedColumns {
@@ -45,6 +49,7 @@ struct SceneConditions {
   RigidScene<D> rigid;
   std::vector<ReferenceOptions> references;  ///< of each body; none: all are renewed in each step
   RunLimits limits;
+  std::vector<std::shared_ptr<const ConstitutiveLaw>> laws_of_user;  ///< of all stages
 };
 
 template <int D>

@@ -263,6 +263,8 @@ class BlockSweep {
     const StressSums sums = update_stress(material, StressStrip<D>{.n = n,
                                                                    .dt = dt,
                                                                    .elastic = m_.state.stage.elastic,
+                                                                   .time = m_.state.clock.time + dt,
+                                                                   .x = columns.x,
                                                                    .v = columns.v,
                                                                    .L = columns.L,
                                                                    .F = columns.F,

@@ -44,7 +44,7 @@ struct RenderedRun {
 RenderedRun read_rendered_run(const fs::path& folder)
 {
   require_run(folder);
-  RenderedRun run{read_scene(folder / "scene.yaml"), {}};
+  RenderedRun run{read_scene(folder / "scene.yaml", {}, Libraries::closed), {}};
   const fs::path series = folder / "particles.pvd";
   if (!fs::exists(series))
     throw EnvironmentError(fmt::format("{} is not there: the scene asks for no outputs.particles", series.string()));

@@ -235,7 +235,7 @@ RunFolder read_run_folder(const fs::path& folder)
 {
   require_run(folder);
   RunFolder run{folder, read_summary(folder / "summary.json"), {}, {}};
-  run.scene = read_scene(folder / "scene.yaml", run.summary.overrides);
+  run.scene = read_scene(folder / "scene.yaml", run.summary.overrides, Libraries::closed);
   run.state = state_of_run(folder, run.summary);
   return run;
 }

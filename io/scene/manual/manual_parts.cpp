@@ -212,6 +212,7 @@ class Manual {
       case Kind::text: return fmt::format("text{}", s);
       case Kind::word: return fmt::format("word{}", s);
       case Kind::node: return fmt::format("value{}", s);
+      case Kind::named: return "mapping of numbers";
       case Kind::table: return fmt::format("list{} of [time, value]", s);
       case Kind::list: return fmt::format("list{} of {}", s, type_text(*type.entry, path, true));
       case Kind::optional: return type_text(*type.entry, path, several);

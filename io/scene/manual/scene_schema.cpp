@@ -79,6 +79,7 @@ Json schema_of(const ValueType& type, const Range& range)
     case Kind::optional: return schema_of(*type.entry, range);
     case Kind::choice: return one_of(empty_mapping(), "type", "what it is: decides the other keys", type.structs);
     case Kind::node: return Json::object();
+    case Kind::named: return {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
     case Kind::list: {
       Json schema{{"type", "array"}, {"minItems", 1}, {"items", schema_of(*type.entry, range)}};
       if (type.length != 0)

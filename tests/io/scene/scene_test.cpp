@@ -354,11 +354,30 @@ TEST(Scene, SaysHowWaterFlows)
   EXPECT_EQ(flow.surface, SurfaceFlow::drained);
 }
 
+TEST(Scene, ReadsLawsOfTheUserWithoutTheirLibraries)
+{
+  const Scene s = read_scene(folder / "own_laws.yaml", {}, Libraries::closed);
+  const auto& own = std::get<LawBySymbol>(choices_of(s.materials.at(0).law));
+  EXPECT_EQ(own.library, "laws/libsoil.so");
+  EXPECT_EQ(own.symbol, "soil");
+  EXPECT_TRUE(own.serial);
+  ASSERT_EQ(own.parameters.all.size(), 2U);
+  EXPECT_EQ(own.parameters.all[1].name, "cohesion");
+  EXPECT_EQ(*own.parameters.find("cohesion"), 5e3);
+  EXPECT_FALSE(s.materials.at(0).law.is_open());
+  const auto& umat = std::get<UmatLaw>(choices_of(s.materials.at(1).law));
+  EXPECT_THAT(umat.constants, ElementsAre(1e7, 0.3));
+  EXPECT_EQ(umat.depvar, 2);
+  EXPECT_THAT(umat.initial_statev, ElementsAre(0, 1));
+  EXPECT_THROW(s.materials.at(0).law.model(), Error);
+}
+
 TEST(Scene, ExamplesUseEveryKeyThereIs)
 {
   std::string text;
   for (const std::string name : {"plane.yaml", "solid.yaml", "smallest.yaml", "terrain.yaml", "section.yaml", "shapes.yaml", "flow.yaml"})
     text += scene(name).text;
+  text += read_scene(folder / "own_laws.yaml", {}, Libraries::closed).text;
   std::set<std::string> keys;
   add_keys(value_type<Scene>(), keys);
   EXPECT_GT(keys.size(), 60U);
