@@ -8,6 +8,7 @@ import posixpath
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -20,6 +21,9 @@ from pygments.util import ClassNotFound
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import python_reference  # noqa: E402
+
 KATEX = Path("/usr/share/javascript/katex")    # Debian: libjs-katex, fonts-katex
 FENCED = re.compile(r"^(```|~~~).*?^\1", re.S | re.M)
 LINK = re.compile(r"(\]\()([^)#\s]+)(#[^)\s]*)?(\))")
@@ -125,6 +129,10 @@ def on_files(files, config):
         file = File(f"site/{name}", str(HERE), config["site_dir"], use_directory_urls=False)
         file.abs_src_path = str(HERE / name)
         files.append(file)
+    try:
+        give(files, config, "reference/python.md", python_reference.page())
+    except (ImportError, ValueError) as error:
+        raise PluginError(f"reference of the Python package: {error}") from error
     give(files, config, "site/code.css", HtmlFormatter(style="default").get_style_defs(".highlight"))
     give(files, config, "site/words.js", "")    # filled when all pages are known
     return files
