@@ -19,7 +19,7 @@ GUIDE = ROOT / "docs/guide/python.md"
 
 class Gallery(unittest.TestCase):
     def test_every_script_runs_and_draws(self):
-        self.assertGreaterEqual(len(SCRIPTS), 9)
+        self.assertGreaterEqual(len(SCRIPTS), 10)
         with tempfile.TemporaryDirectory() as folder:
             for script in SCRIPTS:
                 picture = Path(folder) / f"{script.stem}.png"
