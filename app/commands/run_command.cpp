@@ -157,7 +157,7 @@ class Run {
       throw EnvironmentError(failed("not enough memory"));
     }
     if (!options_.quiet && world().is_root())
-      say(stdout, "{}results in {}; as one page for the browser: talus report {}\n", table(recorder), folder_.string(),
+      say(stdout, "{}results in {}; as one page for the browser: talus report {}\n", table(recorder, summary_), folder_.string(),
           shell_word(folder_));
     world().together([&] { tell_failed_accounts(); });
   }
@@ -205,16 +205,13 @@ class Run {
       initial_ = setup.origin->file;
     if (in_place())
       return;
-    const auto refusal = [&](const fs::path& source) {
-      return fmt::format("{} is among the results in {}, which this run replaces: choose another folder with --out", source.string(),
-                         folder_.string());
-    };
     if (from_)
       for (const fs::path& file : from_->files())
         if (lies_in(file, folder_))
-          throw EnvironmentError(refusal(file));
+          throw EnvironmentError(replaces_source(file, folder_));
+    check_start_tables(scene_, setup.start_states, folder_);
     if (initial_ && lies_in(*initial_, folder_))
-      throw SceneErrors(scene_.initial->where, refusal(*initial_));
+      throw SceneErrors(scene_.initial->where, replaces_source(*initial_, folder_));
   }
 
   /// The longest remaining time of all stages [s].
@@ -323,6 +320,7 @@ class Run {
     summary.wall_seconds = wall_by_phase(phases_, recorder.step_seconds(), recorder.output_seconds(), checkpoints.seconds());
     summary.wall_total = phases_.total();
     complete(recorder, quick_, summary);
+    summary_.stages = summary.stages;
     if (status == RunStatus::done)
       failed_accounts_ = failed_accounts(summary, least_energy_);
     summary.warnings.insert(summary.warnings.begin(), failed_accounts_.begin(), failed_accounts_.end());

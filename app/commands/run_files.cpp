@@ -24,6 +24,20 @@ bool goes_on_in_place(const CheckpointList* from, const fs::path& folder)
   return from != nullptr && from->folder() && fs::equivalent(folder, *from->folder(), not_there);
 }
 
+std::string replaces_source(const fs::path& source, const fs::path& folder)
+{
+  return fmt::format("{} is among the results in {}, which this run replaces: choose another folder with --out", source.string(),
+                     folder.string());
+}
+
+void check_start_tables(const Scene& scene, const std::vector<StartStateSummary>& starts, const fs::path& folder)
+{
+  for (const BodySpec& body : scene.bodies)
+    for (const StartStateSummary& start : starts)
+      if (body.initial && start.body == body.name && lies_in(start.file, folder))
+        throw SceneErrors(body.initial->where, replaces_source(start.file, folder));
+}
+
 template <int D>
 void write_first_files(const fs::path& place, const RunSummary& summary, const Mesh<D>& mesh, const std::optional<fs::path>& initial)
 {
@@ -66,8 +80,10 @@ void compare(const RunIdentity& then, const RunIdentity& now)
     throw EnvironmentError(
         fmt::format("the mesh of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
   if (then.from_files != now.from_files)
-    throw EnvironmentError(fmt::format(
-        "a record or the water table of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
+    throw EnvironmentError(
+        fmt::format("a record or the water table of {}, or the table of a body, is not the one that the checkpoint was made with: its file "
+                    "has changed since",
+                    now.scene_file));
   std::vector<std::string> maker, here;  // differing parts
   for (const auto& [what, part] :
        {std::pair("commit", &RunIdentity::commit), std::pair("compiler", &RunIdentity::compiler), std::pair("build", &RunIdentity::build)})

@@ -15,6 +15,11 @@ namespace talus {
 /// Whether a run continues in the results folder of the run that it resumes.
 bool goes_on_in_place(const CheckpointList* from, const std::filesystem::path& folder);
 
+/// Why a run cannot write into a folder: it would replace a file that it reads.
+std::string replaces_source(const std::filesystem::path& source, const std::filesystem::path& folder);
+/// Throws SceneErrors if the table of a body lies among the results that the run would replace.
+void check_start_tables(const Scene& scene, const std::vector<StartStateSummary>& starts, const std::filesystem::path& folder);
+
 /// Writes summary, mesh and initial state at the start.  An existing mesh file is kept: it is that of the run, or was changed by the user.
 /// `initial`: the file of the initial state, which is copied.
 template <int D>

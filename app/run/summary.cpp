@@ -196,6 +196,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.watch.gain_limit = setup.conditions.limits.gain;
   s.warnings = setup.warnings;
   s.origin = setup.origin;
+  s.start_states = setup.start_states;
   return s;
 }
 
@@ -208,12 +209,13 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   s.files.assign(recorder.files().begin(), recorder.files().end());
   for (const StageResult& stage : recorder.stages()) {
     const bool at_rest = stage.kind != "run";
-    const auto if_sought = [&](Real residual) { return at_rest ? std::optional(residual) : std::nullopt; };
-    s.stages.push_back({stage.kind, stage.steps, stage.end - stage.start, if_sought(stage.residual),
+    const bool starts_from_table = s.stages.empty() && !s.start_states.empty();
+    const auto if_sought = [](bool sought, Real residual) { return sought ? std::optional(residual) : std::nullopt; };
+    s.stages.push_back({stage.kind, stage.steps, stage.end - stage.start, if_sought(at_rest, stage.residual),
                         quick     ? "quick"
                         : at_rest ? "at rest"
                                   : "done",
-                        if_sought(stage.first_residual), stage.name});
+                        if_sought(at_rest || starts_from_table, stage.first_residual), stage.name});
   }
   s.changes = recorder.changes();
   s.steps = last.clock.step;
@@ -248,7 +250,7 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
 }
 
 template <int D>
-std::string table(const Recorder<D>& recorder)
+std::string table(const Recorder<D>& recorder, const RunSummary& summary)
 {
   const LastSeen<D>& last = recorder.last_seen();
   std::string text = fmt::format("{:<16}", "energy [J]");
@@ -278,10 +280,12 @@ std::string table(const Recorder<D>& recorder)
     if (stage.solve.increments > 0)
       text += fmt::format("stage {}: {} increments solved, {} cut, in {} iterations of Newton's method and {} of linear systems\n",
                           stage.name, stage.solve.increments, stage.solve.cuts, stage.solve.iterations, stage.solve.linear_iterations);
-  for (const StageResult& stage : recorder.stages())
-    if (stage.kind != "run")
-      text += fmt::format("stage {}: unbalanced force {:.3g} of the loads, {:.3g} when it began\n", stage.name, stage.residual,
-                          stage.first_residual);
+  for (const StageSummary& stage : summary.stages)
+    if (stage.residual)
+      text += fmt::format("stage {}: unbalanced force {:.3g} of the loads, {:.3g} when it began\n", stage.name, *stage.residual,
+                          stage.first_residual.value_or(0));
+    else if (stage.first_residual)
+      text += fmt::format("stage {}: unbalanced force {:.3g} of the loads when it began\n", stage.name, *stage.first_residual);
   text += fmt::format("mass {:.6g} kg", last.mass.start);
   if (last.mass.placed > 0)
     text += fmt::format(", and {:.6g} kg ({} particles) that stages placed", last.mass.placed, last.mass.placed_count);
@@ -300,7 +304,7 @@ template RunSummary begin_summary<2>(const Scene&, const Mesh<2>&, std::uint64_t
 template RunSummary begin_summary<3>(const Scene&, const Mesh<3>&, std::uint64_t, const Setup<3>&);
 template void complete<2>(const Recorder<2>&, bool, RunSummary&);
 template void complete<3>(const Recorder<3>&, bool, RunSummary&);
-template std::string table<2>(const Recorder<2>&);
-template std::string table<3>(const Recorder<3>&);
+template std::string table<2>(const Recorder<2>&, const RunSummary&);
+template std::string table<3>(const Recorder<3>&, const RunSummary&);
 
 }  // namespace talus

@@ -21,8 +21,8 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
 template <int D>
 void complete(const Recorder<D>& recorder, bool quick, RunSummary& summary);
 
-/// Energies by stage, mass and momentum, as a few lines of text that end with a line feed.
+/// Energies by stage, mass and momentum, and how far stages of the completed summary were from equilibrium, as a few lines of text that end with a line feed.
 template <int D>
-std::string table(const Recorder<D>& recorder);
+std::string table(const Recorder<D>& recorder, const RunSummary& summary);
 
 }  // namespace talus

@@ -1,6 +1,6 @@
 #pragma once
 // The group `flow` of the block `water` of a scene -> how water flows through the pores of bodies.
-#include "app/setup/cell_occupancy.hpp"
+#include "app/setup/checks/cell_occupancy.hpp"
 #include "app/setup/checks/scene_error_collector.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/flow/flow.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 // The block `loads` of a scene -> loads.
-#include "app/setup/cell_occupancy.hpp"
+#include "app/setup/checks/cell_occupancy.hpp"
 #include "app/setup/checks/scene_error_collector.hpp"
 #include "app/setup/setup.hpp"
 

@@ -8,6 +8,7 @@
 #include "app/observers/runout.hpp"
 #include "app/setup/boundaries_of_scene.hpp"
 #include "app/setup/checks/softening_cells.hpp"
+#include "app/setup/checks/thin_layers.hpp"
 #include "app/setup/contacts_of_scene.hpp"
 #include "app/setup/flow_of_scene.hpp"
 #include "app/setup/loads_of_scene.hpp"
@@ -15,7 +16,7 @@
 #include "app/setup/rigid_of_scene.hpp"
 #include "app/setup/seed.hpp"
 #include "app/setup/stages_of_scene.hpp"
-#include "app/setup/thin_layers.hpp"
+#include "app/setup/start_states.hpp"
 #include "app/setup/water_table.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
@@ -137,6 +138,7 @@ template <int D>
 std::uint64_t digest_of_files(const Setup<D>& setup)
 {
   std::vector<Real> numbers = setup.conditions.water.table;
+  numbers.insert(numbers.end(), setup.start_digest.begin(), setup.start_digest.end());
   for (const StageChange<D>& change : setup.changes)
     if (change.table)
       numbers.insert(numbers.end(), change.table->begin(), change.table->end());
@@ -297,6 +299,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   for (MeshTraction<D>& load : open_water_of(scene, mesh, at_start))
     setup.conditions.loads.on_mesh.push_back(std::move(load));
   saturate(scene, 0, mesh, setup.conditions.water, setup.state.bodies, setup.state.particles);
+  set_start_states(scene, mesh, ranks, errors, setup);
   if (scene.water && scene.water->table) {
     warn_if_dry(mesh, ranks, setup);
     warn_of_suction(mesh, ranks, setup);

@@ -19,9 +19,11 @@ struct Setup {
   std::vector<std::vector<Material>> laws;  ///< of all bodies in each stage, without particles
   StepLimits limits;
   std::vector<std::string> warnings;
-  std::vector<std::string> notes;       ///< worth knowing before a run, such as how strong a record is
-  std::optional<OriginSummary> origin;  ///< of bodies that come from another run
-  std::uint64_t from_files = 0;         ///< digest of what files beside scene and mesh tell the steps: records, the water table
+  std::vector<std::string> notes;               ///< worth knowing before a run, such as how strong a record is
+  std::optional<OriginSummary> origin;          ///< of bodies that come from another run
+  std::vector<StartStateSummary> start_states;  ///< of bodies that start with a table
+  std::vector<Real> start_digest;               ///< the bits of the digests of their tables
+  std::uint64_t from_files = 0;                 ///< digest of what files beside scene and mesh tell the steps: records, the water table
 };
 
 /// Throws SceneErrors with everything that is wrong: groups the mesh does not have, bodies without particles, loads on nothing.

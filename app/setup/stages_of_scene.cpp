@@ -168,20 +168,32 @@ void set_stages(const Scene& scene, SceneErrorCollector& errors, Setup<D>& setup
     setup.stages.push_back({.name = "run", .duration = scene.time.end, .where = scene.time.where});
   for (const StageSpec& spec : scene.stages)
     setup.stages.push_back(stage_of(spec));
+  const auto has_table = [&](const std::string& name) {
+    return std::ranges::any_of(scene.bodies, [&](const BodySpec& body) { return body.name == name && body.initial.has_value(); });
+  };
+  const bool any_table = std::ranges::any_of(scene.bodies, [](const BodySpec& body) { return body.initial.has_value(); });
   for (std::size_t s = 0; s < scene.stages.size(); ++s) {
     Stage& stage = setup.stages[s];
     const K0Spec* const stress = initial_stress_of(scene.stages[s]);
     if (const auto* solved = std::get_if<StaticSpec>(&scene.stages[s]);
-        solved != nullptr && solved->grow.value_or(s == 0 && stress == nullptr))
+        solved != nullptr && solved->grow.value_or(s == 0 && stress == nullptr && !any_table))
       stage.ramp = stage.duration;
     if (stress == nullptr)
       continue;
     stage.start_stress = start_stress_of_bodies(*stress, scene, errors);
-    if (s > 0)
-      stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.state.bodies);
+    if (s > 0 || any_table) {
+      std::vector<std::string> named;
+      for (const BodySpec& body : scene.bodies)
+        if (std::cmp_equal(presence_of(body.name, scene.stages).from, s) && !has_table(body.name))
+          named.push_back(body.name);
+      stage.start_stress_bodies = numbers_of(named, setup.state.bodies);
+      if (named.empty())
+        stage.start_stress.clear();
+    }
     for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {
       const Index from = presence_of(setup.state.bodies[b].name, scene.stages).from;
-      if (std::cmp_equal(from, s) && !setup.state.materials[b].law().description().starts_from_stress)
+      if (std::cmp_equal(from, s) && !has_table(setup.state.bodies[b].name) &&
+          !setup.state.materials[b].law().description().starts_from_stress)
         errors.add(stage.where, "initial_stress",
                    fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
                                setup.state.materials[b].law().name(), setup.state.bodies[b].name));

@@ -39,6 +39,17 @@ Json to_object(const StageSummary& stage)
   return object;
 }
 
+Json to_object(const StartStateSummary& start)
+{
+  return {{"body", start.body},
+          {"file", start.file},
+          {"points", start.points},
+          {"particles", start.particles},
+          {"beyond_yield", start.beyond_yield},
+          {"largest_return", start.largest_return},
+          {"farthest [m]", start.farthest}};
+}
+
 template <class Item>
 Json to_list(const std::vector<Item>& items)
 {
@@ -162,6 +173,8 @@ std::string to_json(const RunSummary& s)
   json["bodies"] = to_list(s.bodies);
   if (s.origin)
     json["initial"] = to_object(*s.origin);
+  if (!s.start_states.empty())
+    json["start_states"] = to_list(s.start_states);
   json["stages"] = to_list(s.stages);
   if (!s.changes.empty())
     json["changes"] = s.changes;

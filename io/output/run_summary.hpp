@@ -92,6 +92,15 @@ struct OriginSummary {
   std::vector<Taken> bodies;
 };
 
+/// A body that starts with the state of a table.
+struct StartStateSummary {
+  std::string body, file;
+  std::int64_t points{}, particles{};
+  std::int64_t beyond_yield{};  ///< particles whose stress lies beyond the yield surface
+  Real largest_return{};        ///< of their stress to it, over the largest stress of the body [-]
+  Real farthest{};              ///< largest distance of a particle from its nearest point [m]
+};
+
 /// The distribution of a run among ranks and its cost; numbers per step are those of the rank with the largest value.
 struct RanksSummary {
   int count = 1;
@@ -129,6 +138,7 @@ struct RunSummary {
   std::vector<NamedValue> mesh_quality;
   std::vector<BodySummary> bodies;
   std::optional<OriginSummary> origin;
+  std::vector<StartStateSummary> start_states;
   std::vector<StageSummary> stages;
   std::vector<std::string> changes;  ///< changes made by stages before their first steps, in words
 

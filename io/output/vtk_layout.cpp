@@ -1,11 +1,6 @@
 #include "io/output/vtk_layout.hpp"
 
 #include <fmt/format.h>
-#include <vtkLZ4DataCompressor.h>
-#include <vtkLogger.h>
-#include <vtkNew.h>
-#include <vtkSmartPointer.h>
-#include <vtkStringOutputWindow.h>
 
 #include <algorithm>
 #include <charconv>
@@ -14,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "io/files/atomic_file.hpp"
+#include "io/output/vtk_blocks.hpp"
 #include "io/output/xml_tags.hpp"
 
 namespace talus {
@@ -21,28 +17,6 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Suppresses all output of VTK while it exists.
-class SilentVtk {
- public:
-  SilentVtk() : window_(vtkOutputWindow::GetInstance()), log_(vtkLogger::GetCurrentVerbosityCutoff())
-  {
-    vtkOutputWindow::SetInstance(heard_);
-    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-  }
-  ~SilentVtk()
-  {
-    vtkOutputWindow::SetInstance(window_);
-    vtkLogger::SetStderrVerbosity(log_);
-  }
-  SilentVtk(const SilentVtk&) = delete;
-  SilentVtk& operator=(const SilentVtk&) = delete;
-
- private:
-  vtkSmartPointer<vtkOutputWindow> window_;
-  vtkLogger::Verbosity log_;
-  vtkNew<vtkStringOutputWindow> heard_;
-};
 
 constexpr std::string_view data_section = "AppendedData";
 constexpr std::uint64_t largest_block = 0x7E000000;  // largest uncompressed block of LZ4 [bytes]
@@ -236,15 +210,14 @@ std::vector<std::byte> VtkLayout::unpacked(const VtkArray& array) const
 {
   const VtkBlocks& blocks = array.blocks;
   std::vector<std::byte> all(blocks.unpacked());
-  const SilentVtk silent;
-  vtkNew<vtkLZ4DataCompressor> compressor;
+  BlockUnpacker unpack("vtkLZ4DataCompressor");
   const char* from = bytes_.data() + blocks.bytes;
   std::byte* to = all.data();
   for (std::uint64_t b = 0; b < blocks.count; ++b) {
     std::uint64_t packed = 0;
     std::memcpy(&packed, bytes_.data() + blocks.sizes + b * sizeof packed, sizeof packed);
     const std::uint64_t size = std::min<std::uint64_t>(blocks.size, static_cast<std::uint64_t>(all.data() + all.size() - to));
-    if (compressor->Uncompress(reinterpret_cast<const unsigned char*>(from), packed, reinterpret_cast<unsigned char*>(to), size) != size)
+    if (!unpack({from, packed}, {to, size}))
       fail(fmt::format("block {} of \"{}\" cannot be unpacked", b + 1, array.name));
     from += packed;
     to += size;

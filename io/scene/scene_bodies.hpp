@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/fields.hpp"
+#include "io/scene/scene_start_state.hpp"
 #include "io/scene/shape.hpp"
 #include "materials/interface/any_law.hpp"
 #include "solver/options/reference_options.hpp"
@@ -40,6 +41,7 @@ struct BodySpec {
   std::optional<ReferenceOptions> reference;
   std::vector<std::string> velocity;
   std::optional<Real> saturated_density;
+  std::optional<StartStateSpec> initial;
   SourceLocation where;
   static constexpr auto fields()
   {
@@ -60,7 +62,9 @@ struct BodySpec {
                  "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\": see formulas"),
         optional("saturated_density", &BodySpec::saturated_density, positive, "kg/m^3",
                  "mass density, pores full of water, of the particles that lie below the water table at the start; default that of the "
-                 "material")};
+                 "material"),
+        group("initial", &BodySpec::initial,
+              "stress and other values that the body starts with, from a table of points: the state of another program")};
   }
   bool fills() const noexcept { return !region.empty() || shape.has_value(); }
 
@@ -81,10 +85,6 @@ struct BodySpec {
     });
   }
 };
-
-/// What happens to a quantity of particles that come from another run.
-enum class Carried : std::uint8_t { keep, zero };
-constexpr std::array<std::string_view, 2> enum_names(Carried) { return {"keep", "zero"}; }
 
 /// A body of the scene, and the body of the other run whose particles it takes.
 struct TakenSpec {

@@ -68,12 +68,18 @@ class Rules : private SceneRuleBase {
     const auto known = names(scene_.bodies);
     for (std::size_t i = 0; i < spec.bodies.size(); ++i) {
       known_word(fmt::format("{}.bodies[{}].body", path, i), "body", spec.bodies[i].body, known);
+      if (const auto body = std::ranges::find(scene_.bodies, spec.bodies[i].body, &BodySpec::name);
+          body != scene_.bodies.end() && body->initial)
+        add(fmt::format("{}.bodies[{}].body", path, i),
+            fmt::format("the stress of \"{}\" comes from its table (initial): leave this out", body->name));
       for (std::size_t j = 0; j < i; ++j)
         if (spec.bodies[j].body == spec.bodies[i].body)
           add(fmt::format("{}.bodies[{}].body", path, i), fmt::format("bodies[{}] is about \"{}\" already", j, spec.bodies[i].body));
     }
-    for (const std::string& body : known)
-      if (presence_of(body, scene_.stages).from == number && spec.of(body).given() == 0)
+    if (number == 0 && std::ranges::all_of(scene_.bodies, [](const BodySpec& body) { return body.initial.has_value(); }))
+      add(path, "the stress of all bodies comes from their tables (initial): leave this out");
+    for (const auto& [body, from_table] : bodies_and_tables())
+      if (!from_table && presence_of(body, scene_.stages).from == number && spec.of(body).given() == 0)
         add(path, fmt::format("body \"{}\" has no k0: one of k0, k0_table, from_friction or stress is needed for the bodies that the "
                               "list does not name",
                               body));
@@ -82,6 +88,15 @@ class Rules : private SceneRuleBase {
     for (std::size_t i = 0; i < spec.bodies.size(); ++i)
       if (spec.bodies[i].stress)
         plane_stress(fmt::format("{}.bodies[{}].stress", path, i), *spec.bodies[i].stress);
+  }
+
+  /// The names of bodies, and whether a table has their stress.
+  std::vector<std::pair<std::string, bool>> bodies_and_tables() const
+  {
+    std::vector<std::pair<std::string, bool>> all;
+    for (const BodySpec& body : scene_.bodies)
+      all.emplace_back(body.name, body.initial.has_value());
+    return all;
   }
 
   /// In plane strain there is no shear out of the plane.
@@ -278,7 +293,11 @@ class Rules : private SceneRuleBase {
   }
 
   /// Whether the bodies begin in equilibrium with the loads, as far as the scene tells.
-  bool begins_at_rest() const { return scene_.initial || (!scene_.stages.empty() && seeks_equilibrium(scene_.stages.front())); }
+  bool begins_at_rest() const
+  {
+    return scene_.initial || std::ranges::all_of(scene_.bodies, [](const BodySpec& body) { return body.initial.has_value(); }) ||
+           (!scene_.stages.empty() && seeks_equilibrium(scene_.stages.front()));
+  }
 };
 
 }  // namespace

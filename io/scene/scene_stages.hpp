@@ -217,7 +217,8 @@ struct StaticSpec : StageChanges {
                 "the stage fails if at its end a larger share of the loads is out of balance without the stiffness that the solver gives "
                 "to displacements that the kernel does not see"),
             optional("grow", &StaticSpec::grow, any, "-",
-                     "whether gravity and loads grow from zero; default true in the first stage without initial_stress, else false: they "
+                     "whether gravity and loads grow from zero; default true in the first stage without initial_stress and tables of "
+                     "bodies, else false: they "
                      "act from its beginning, and tables and prescribed velocities alone change in it"),
             optional("duration", &StaticSpec::duration, positive, "s",
                      "by how much time goes on, for tables, prescribed velocities and outputs; rates are those of this time"),

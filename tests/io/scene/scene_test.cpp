@@ -72,6 +72,23 @@ TEST(Scene, ReadsWhatBeginsAsAnotherRunLeftIt)
   EXPECT_FALSE(scene("plane.yaml").initial.has_value());
 }
 
+TEST(Scene, ReadsTheTableThatABodyStartsWith)
+{
+  const Scene s = scene("shapes.yaml");
+  EXPECT_FALSE(s.bodies.at(1).initial.has_value());
+  const StartStateSpec start = s.bodies.at(0).initial.value();
+  EXPECT_EQ(start.table, "states/fe.csv");
+  EXPECT_EQ(start.sign, StressSign::compression_positive);
+  EXPECT_EQ(start.unit, StressUnit::kPa);
+  EXPECT_EQ(start.stress, StressMeant::effective);
+  EXPECT_EQ(start.data, PointsOf::cells);
+  EXPECT_EQ(start.select.value().column, "material");
+  EXPECT_EQ(start.select.value().value, "2");
+  EXPECT_EQ(start.reach, 1.5);
+  EXPECT_EQ(start.velocity, Carried::zero);
+  EXPECT_EQ(start.displacement, Carried::keep);
+}
+
 TEST(Scene, ReadsInlineGeometry)
 {
   const MeshSpec mesh = scene("plane.yaml").mesh;

@@ -1,11 +1,11 @@
-#include "app/setup/thin_layers.hpp"
+#include "app/setup/checks/thin_layers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "app/setup/cell_occupancy.hpp"
+#include "app/setup/checks/cell_occupancy.hpp"
 
 namespace talus {
 

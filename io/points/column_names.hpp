@@ -1,0 +1,33 @@
+#pragma once
+// What the names of columns mean that programs give them.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/types.hpp"
+
+namespace talus {
+
+enum class PointQuantity : std::uint8_t { other, position, stress, effective_stress, pore_pressure, velocity, displacement };
+
+/// A quantity and the number of its component: of a vector 0..2, of stress as in Sym3.
+struct ColumnMeaning {
+  PointQuantity quantity = PointQuantity::other;
+  std::size_t component = 0;
+  bool is_stress() const noexcept { return quantity == PointQuantity::stress || quantity == PointQuantity::effective_stress; }
+};
+
+/// A name without case, blanks and signs between its parts; Greek sigma and tau written out.
+std::string plain_name(std::string_view name);
+
+/// The meaning of a name: "stress_xx", "sigma_xx", "S11", "effective_stress_xy", "x", "position_y", ...
+ColumnMeaning meaning_of(std::string_view name);
+
+/// The factor to SI of a unit of stress, length or speed; 0 for another one.
+Real factor_of_unit(std::string_view unit, PointQuantity quantity);
+
+/// The columns of the components of stress in their order.
+inline constexpr std::array<std::string_view, 6> stress_endings{"xx", "yy", "zz", "xy", "yz", "xz"};
+
+}  // namespace talus
