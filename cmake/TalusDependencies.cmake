@@ -22,6 +22,10 @@ if(TALUS_PROGRAMS)
   find_package(CLI11 2.1 REQUIRED)
   find_package(muparser 2.3 REQUIRED)
   find_package(ZLIB 1.2.11 REQUIRED)
+  find_program(TALUS_PYTHON python3 HINTS /usr/bin)   # the one that has Debian's numpy
+  set(Python_EXECUTABLE ${TALUS_PYTHON})
+  find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development)
+  find_package(pybind11 2.10 REQUIRED)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(TALUS_PETSC REQUIRED IMPORTED_TARGET petsc>=3.15)
   # By its full name: plain `hdf5` may be any of several builds, and two of them must not meet in one program.

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "solver/stages.hpp"
+#include "solver/step/set_velocities.hpp"
 
 namespace talus {
 
@@ -29,6 +30,8 @@ struct RunView {
   /// The particles for a reader of its own, see take_copy(Model): those of `state` are there after fetch_particles() only, again.  Nothing
   /// if they can be read in `state` only.
   std::function<std::optional<ParticleCopy<D>>()> take_copy = [] { return std::optional<ParticleCopy<D>>(); };
+  /// Changes the run, see set_velocities(); for its script.  Empty where velocities mean nothing, as in stages without inertia.
+  std::function<void(std::span<const Real>, VelocityChange)> set_velocities = {};
 };
 
 template <int D>

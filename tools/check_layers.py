@@ -46,6 +46,7 @@ THIRD_PARTY = [
     ("yaml-cpp/*", ["io/scene/reader.cpp"]),
     ("gmsh.h*", ["io/mesh/gmsh_*.cpp", "tests/io/load_mesh_test.cpp"]),
     ("petsc*", ["io/equations/petsc_solver.cpp"]),
+    ("pybind11/*", ["io/python/embedded_*"]),
     ("gdal*", ["io/terrain/gdal_*"]),
     ("ogr_*", ["io/terrain/gdal_*"]),
     ("cpl_*", ["io/terrain/gdal_*"]),

@@ -19,6 +19,15 @@ void SceneCommands::add_new(CLI::App& app)
   made->callback([this] { new_scene(new_); });
 }
 
+/// The change of a scene for a script whose path starts in the current folder.
+std::string set_of_script(const std::string& file)
+{
+  std::string text = "script.file=\"";
+  for (const char c : std::filesystem::absolute(file).string())
+    text += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+  return text + '"';
+}
+
 void SceneCommands::add_run(CLI::App& app)
 {
   CLI::App* run = app.add_subcommand("run", "run a scene");
@@ -32,6 +41,11 @@ void SceneCommands::add_run(CLI::App& app)
   run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or as many as pay for its particles")
       ->check(number_within(1, 1024));
   run->add_option("--set", run_.set, set_help);
+  run->add_option_function<std::string>(
+         "--script", [this](const std::string& file) { run_.set.push_back(set_of_script(file)); },
+         "call the functions of this script in Python between the steps (script.file in a scene)")
+      ->type_name("*.py")
+      ->needs(scene);
   run->add_option("--until", run_.until, "stop after so many steps with a checkpoint, to go on from or to look at")
       ->check(number_not_below_zero());
   run->add_option("--rebalance", run_.rebalance,

@@ -15,6 +15,7 @@
 #include "app/run/run_phases.hpp"
 #include "app/run/summary.hpp"
 #include "app/run/thread_choice.hpp"
+#include "app/script/script_of_run.hpp"
 #include "app/setup/quick.hpp"
 #include "app/setup/resumed_scene.hpp"
 #include "core/display_text.hpp"
@@ -74,7 +75,9 @@ class Run {
     n_particles_ = setup.n_particles, n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
     if (!world().alone() && world().is_root())
       whole_ = mesh;
+    ScriptOfRun<D> script(scene_, folder_);
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
+    script.join(recorder);
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     RunCallbacks<D> callbacks{[&](const RunView<D>& view, RunEvent event) {
                                 Real seconds = 0;
@@ -83,9 +86,11 @@ class Run {
                                 if (event == RunEvent::step_done)
                                   thread_choice_.took(seconds);
                                 const LapAtEnd observed(watch_, phases_.observers);
+                                script.before_files(view, event, phases_.script);
                                 recorder.watch(view, event);
+                                script.after_files(view, event, phases_.script);
                                 if (event == RunEvent::step_begins) {
-                                  checkpoints.see(view, recorder);
+                                  script.stop_if_asked(view, [&](const std::string& why) { checkpoints.see(view, recorder, why); });
                                   set_threads(thread_choice_.next());
                                 }
                                 if (event == RunEvent::given_up)
@@ -186,14 +191,7 @@ class Run {
   {
     if (checkpoints.last_step() == sound || resumed_after_ == sound)
       return {};
-    std::string command = fmt::format("talus run {} --out {}{}", shell_word(options_.scene), shell_word(folder_), quick_ ? " --quick" : "");
-    if (from_)
-      command = fmt::format("talus run --resume {} --out {}", shell_word(*options_.resume), shell_word(folder_));
-    for (const std::string& change : options_.set)
-      command += " --set " + shell_word(change);
-    if (!checkpoints.last().empty())  // the checkpoint contains the changes
-      command = fmt::format("talus run --resume {}", shell_word(folder_));
-    return fmt::format("; the state before it: {} --until {}", command, sound);
+    return tell_way_back(options_, folder_, quick_, !checkpoints.last().empty(), sound);
   }
 
   bool in_place() const { return goes_on_in_place(from_, folder_); }

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "core/display_text.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/print.hpp"
 
@@ -37,6 +38,19 @@ std::string tell_set_aside(const std::filesystem::path& taken, const std::vector
     names.push_back(file.filename().string());
   return fmt::format("newer checkpoints than {} are of another way of the run, or damaged, and were renamed: {}", taken.filename().string(),
                      fmt::join(names, ", "));
+}
+
+std::string tell_way_back(const RunOptions& options, const std::filesystem::path& folder, bool quick, bool has_checkpoint,
+                          std::int64_t sound)
+{
+  std::string command = fmt::format("talus run {} --out {}{}", shell_word(options.scene), shell_word(folder), quick ? " --quick" : "");
+  if (options.resume)
+    command = fmt::format("talus run --resume {} --out {}", shell_word(*options.resume), shell_word(folder));
+  for (const std::string& change : options.set)
+    command += " --set " + shell_word(change);
+  if (has_checkpoint)  // the checkpoint contains the changes
+    command = fmt::format("talus run --resume {}", shell_word(folder));
+  return fmt::format("; the state before it: {} --until {}", command, sound);
 }
 
 void say_rebalanced(const Rebalanced& by)

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/commands/run_command.hpp"
 #include "app/run/simulate.hpp"
 #include "app/setup/stage_changes.hpp"
 
@@ -17,6 +18,10 @@ std::vector<std::string> tell_changes(Real time, std::string_view stage, const S
 
 /// The warning about checkpoints that were renamed, because they are newer than the one that the run resumes from.
 std::string tell_set_aside(const std::filesystem::path& taken, const std::vector<std::filesystem::path>& aside);
+
+/// The command that computes the state after step `sound` of a failed run again, from its scene or from its checkpoints, if it has some.
+std::string tell_way_back(const RunOptions& options, const std::filesystem::path& folder, bool quick, bool has_checkpoint,
+                          std::int64_t sound);
 
 /// Prints a redistribution, on the root.
 void say_rebalanced(const Rebalanced& by);

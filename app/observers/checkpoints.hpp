@@ -46,8 +46,8 @@ class Checkpoints {
               std::optional<std::int64_t> until = std::nullopt);
 
   /// To be called before each step: writes a checkpoint, or begins to, if it is due.  Throws Stopped after writing one because of a signal,
-  /// or after `until` steps; EnvironmentError if this one or the one before could not be written, with older ones unchanged.
-  void see(const RunView<D>& view, Recorder<D>& recorder);
+  /// after `until` steps or for `reason`; EnvironmentError if this one or the one before could not be written, with older ones unchanged.
+  void see(const RunView<D>& view, Recorder<D>& recorder, std::string reason = {});
   /// To be called after a stage, when the recorder has its result: writes a checkpoint at the end of the run if the scene requests it, and
   /// returns when all are on the disk at the end of the run.
   void see_end_of_stage(const RunView<D>& view, Recorder<D>& recorder, Index n_stages);

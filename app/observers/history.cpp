@@ -115,6 +115,13 @@ Vec<D> attack(const Vec<D>& force, const Vec3& moment, const Vec<D>& normal, con
   return foot + (place - foot).dot(normal) / through * force;
 }
 
+template <int D>
+std::vector<CsvColumn> joined(std::vector<CsvColumn> columns, const OwnColumns<D>& own)
+{
+  columns.insert(columns.end(), own.columns.begin(), own.columns.end());
+  return columns;
+}
+
 }  // namespace
 
 template <int D>
@@ -193,9 +200,10 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
 }
 
 template <int D>
-HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& start) : spec_(std::move(spec))
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, OwnColumns<D> own, const RunView<D>& start)
+    : spec_(std::move(spec)), own_(std::move(own))
 {
-  start.problem.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
+  start.problem.ranks->together([&] { file_.emplace(file, joined(columns(spec_, start), own_)); });
   state_.impulse.assign(start.state.boundary.conditions().size(), Vec<D>::Zero());
   state_.angular.assign(start.state.boundary.conditions().size(), Vec3::Zero());
   state_.contact.assign(start.state.contacts.size(), Vec<D>::Zero());
@@ -206,10 +214,11 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
 }
 
 template <int D>
-HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& now, HistoryState<D> state)
-    : spec_(std::move(spec)), state_(std::move(state))
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, OwnColumns<D> own, const RunView<D>& now,
+                                HistoryState<D> state)
+    : spec_(std::move(spec)), own_(std::move(own)), state_(std::move(state))
 {
-  now.problem.ranks->together([&] { file_.emplace(HistoryFile::resume(file, columns(spec_, now), now.state.clock.time)); });
+  now.problem.ranks->together([&] { file_.emplace(HistoryFile::resume(file, joined(columns(spec_, now), own_), now.state.clock.time)); });
 }
 
 template <int D>
@@ -257,7 +266,12 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
     put_all<D>(moved_columns(), moved(spec, view), row);
   for (std::size_t k = 0; k < spec_.bodies.size(); ++k)
     add_body(view, forces, k, elapsed, row);
+  if (own_.row) {
+    const std::vector<Real> more = own_.row(view);
+    row.insert(row.end(), more.begin(), more.end());
+  }
   view.problem.ranks->together([&] { file_->append(row); });
+  last_row_ = row;
   state_.time = view.state.clock.time;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 // history.csv: balances, reactions, tracked points, fronts and displacement of the mass at each output time.
+#include <functional>
+
 #include "app/observers/accounts.hpp"
 #include "app/observers/body_forces.hpp"
 #include "io/output/csv.hpp"
@@ -23,6 +25,13 @@ Real moved(const MovedSpec& spec, const RunView<D>& view);
 /// The facets of a wall of the history; the second wall on a group is called GROUP_2.
 template <int D>
 std::optional<std::vector<Facet>> facets_of_wall(const Mesh<D>& mesh, const std::string& wall);
+
+/// Columns at the end of the history that others compute, one value per column.
+template <int D>
+struct OwnColumns {
+  std::vector<CsvColumn> columns;
+  std::function<std::vector<Real>(const RunView<D>&)> row;
+};
 
 /// The data from earlier rows that a row needs.
 template <int D>
@@ -49,15 +58,16 @@ struct HistoryState {
 template <int D>
 class HistoryWriter {
  public:
-  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& start);
+  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, OwnColumns<D> own, const RunView<D>& start);
   /// Continues an existing file after the time of `now`.
-  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& now, HistoryState<D> state);
+  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, OwnColumns<D> own, const RunView<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
   /// Points of this body now track the nearest particle.
   void follow_anew(const std::string& body, const RunView<D>& now);
   void append(const RunView<D>& view, const BalanceHistory<D>& accounts, const BodyForces<D>& forces);
-  const HistoryFile& table() const noexcept { return *file_; }    ///< on the root
-  Real last_time() const noexcept { return file_->last_time(); }  ///< time of the last row in the file [s], on the root
+  const HistoryFile& table() const noexcept { return *file_; }              ///< on the root
+  const std::vector<Real>& last_row() const noexcept { return last_row_; }  ///< empty before the first row of this process
+  Real last_time() const noexcept { return file_->last_time(); }            ///< time of the last row in the file [s], on the root
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const RunView<D>& start);
 
  private:
@@ -67,7 +77,9 @@ class HistoryWriter {
   void add_points(const RunView<D>& view, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
+  OwnColumns<D> own_;
   HistoryState<D> state_;
+  std::vector<Real> last_row_;
   std::optional<HistoryFile> file_;
 };
 

@@ -103,7 +103,7 @@ void Recorder<D>::open(const RunView<D>& view)
     bodies_.push_back(summary_of(view, b));
   has_rigid_ = !view.state.rigid.empty();
   if (outputs_.history) {
-    history_.emplace(folder_ / "history.csv", *outputs_.history, view);
+    history_.emplace(folder_ / "history.csv", *outputs_.history, own_columns_, view);
     history_state_ = history_->state();
   }
   name_lists();
@@ -147,7 +147,7 @@ void Recorder<D>::go_on(const RunView<D>& view)
   traffic_begin_ = view.problem.ranks->traffic(), step_begin_ = view.state.clock.step;
   timings_begin_ = view.state.timings, output_begin_ = output_seconds_;
   if (outputs_.history)
-    history_.emplace(folder_ / "history.csv", *outputs_.history, view, history_state_);
+    history_.emplace(folder_ / "history.csv", *outputs_.history, own_columns_, view, history_state_);
   runout_.go_on(view);
   last_output_ = newest_output_;
   progress_.resume(done_before_ + view.state.clock.time - stage_start_, view.state.timings.particle_steps);

@@ -52,6 +52,11 @@ class Recorder {
   /// `outputs` and the stages must outlive the recorder.  `made_by` is written into each file for ParaView.
   Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet, std::string made_by);
 
+  /// Columns that the history gets besides its own; to be called before the run begins or goes on.
+  void add_columns(OwnColumns<D> columns) { own_columns_ = std::move(columns); }
+  /// The history, if one is written and the run has begun.
+  const HistoryWriter<D>* history() const noexcept { return history_ ? &*history_ : nullptr; }
+
   void watch(const RunView<D>& view, RunEvent event);
   /// Continues the files of a run whose state, including fields() of this recorder, has been read: entries after the time of the view are
   /// dropped.  Returns descriptions of missing files, on the root.
@@ -131,6 +136,7 @@ class Recorder {
   BodyForces<D> body_forces_;
   Progress progress_;
   Schedule particle_times_, mesh_times_, history_times_;
+  OwnColumns<D> own_columns_;
   std::optional<HistoryWriter<D>> history_;
   HistoryState<D> history_state_;  // state of history_ at its last row
   FrameOutput frames_;

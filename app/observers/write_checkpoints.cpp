@@ -83,7 +83,7 @@ bool Checkpoints<D>::due(const Clock& clock) const
 }
 
 template <int D>
-void Checkpoints<D>::see(const RunView<D>& view, Recorder<D>& recorder)
+void Checkpoints<D>::see(const RunView<D>& view, Recorder<D>& recorder, std::string reason)
 {
   StopWatch watch;
   if (task_.is_done())  // so that a failure ends the run soon
@@ -91,10 +91,9 @@ void Checkpoints<D>::see(const RunView<D>& view, Recorder<D>& recorder)
   watch.lap(seconds_);
   if (!at_)
     at_ = view.state.clock;
-  std::string reason = StopRequests::received();
-  if (!reason.empty())
-    reason = "by " + reason;
-  else if (until_ && view.state.clock.step >= *until_)
+  if (const std::string signal = StopRequests::received(); !signal.empty())
+    reason = "by " + signal;
+  else if (reason.empty() && until_ && view.state.clock.step >= *until_)
     reason = "as asked";
   // Signals and clocks differ between ranks, so the ranks agree on the largest of these.
   enum : std::int64_t { go_on, write_one, stop };

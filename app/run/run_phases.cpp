@@ -21,7 +21,9 @@ std::vector<NamedValue> wall_by_phase(const RunPhases& phases, const Timings& in
   add("stress", in_steps.stress);
   add("output", output);
   add("checkpoints", checkpoints);
-  add("monitoring", std::max(Real{0}, phases.observers - output - checkpoints));
+  add("monitoring", std::max(Real{0}, phases.observers - output - checkpoints - phases.script));
+  if (phases.script > 0)
+    add("script", phases.script);
   if (phases.rebalancing > 0)
     add("rebalancing", phases.rebalancing);
   return all;

@@ -18,6 +18,7 @@ struct RunPhases {
   Real initial_stress{};  ///< changes by stages and the stress with which they begin, such as that of K0
   Real steps{};           ///< steps, including what the solver does between its phases
   Real observers{};       ///< output, checkpoints and monitoring
+  Real script{};          ///< part of it: start(), step() and end() of the script of the scene
   Real rebalancing{};     ///< redistribution among ranks
   Real end{};             ///< after the last step
 

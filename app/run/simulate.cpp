@@ -165,6 +165,8 @@ class Simulation {
       copy_to_columns(*model_);
     };
     all.take_copy = [this] { return take_copy(*model_); };
+    if (!stage_at_hand().equilibrium)
+      all.set_velocities = [this](std::span<const Real> values, VelocityChange change) { set_velocities(*model_, values, change); };
     return all;
   }
 

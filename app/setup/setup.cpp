@@ -316,7 +316,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.limits.shortest = scene.time.min_step;
   const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };
   if (setup.state.particles.x0.empty() &&
-      (wants_displacement(scene.outputs) || std::ranges::any_of(setup.conditions.loads.of_place, from_start)))
+      (scene.script || wants_displacement(scene.outputs) || std::ranges::any_of(setup.conditions.loads.of_place, from_start)))
     setup.state.particles.x0 = setup.state.particles.x;
   setup.conditions.limits = run_limits_of(scene, mesh, setup, ranks);
   set_changes(scene, mesh, ranks, setup);

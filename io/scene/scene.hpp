@@ -44,6 +44,18 @@ struct TimeSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
+/// A script in Python that is called during the run.
+struct ScriptSpec {
+  std::string file;
+  Index every = 1;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("file", &ScriptSpec::file, any, "-", "script (.py) with functions start, step, history and end"),
+                      optional("every", &ScriptSpec::every, at_least(1), "-", "its function step is called after every so many steps")};
+  }
+};
+
 enum class Accuracy : std::uint8_t { draft, standard, fine };
 constexpr std::array<std::string_view, 3> enum_names(Accuracy) { return {"draft", "standard", "fine"}; }
 
@@ -71,6 +83,7 @@ struct Scene {
   std::vector<BoundaryOptions> boundaries;
   std::vector<StageSpec> stages;
   OutputSpec outputs;
+  std::optional<ScriptSpec> script;
   OnExit on_exit = OnExit::stop;
   LimitOptions watch;
   Index threads = 0;
@@ -105,6 +118,7 @@ struct Scene {
         optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
         optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),
         optional("outputs", &Scene::outputs, any, "-", "what is written"),
+        group("script", &Scene::script, "a script in Python that sees the run between its steps"),
         optional_choice("on_exit", &Scene::on_exit,
                         "what happens to a particle that leaves the mesh: stop the run, or delete it and keep account of its mass"),
         optional("watch", &Scene::watch, any, "-", "what no sound run does, and what becomes of one that does"),

@@ -52,7 +52,7 @@ ProgressOption = Union[bool, Callable[[Progress], object], None]
 
 def run(scene: Scene, *, set: Mapping[str, Any] | None = None, out: str | os.PathLike[str] | None = None, threads: int | None = None,
         progress: ProgressOption = None, quick: bool = False, strict: bool = False, force: bool = False, until: int | None = None,
-        program: str | os.PathLike[str] | None = None) -> Run:
+        script: str | os.PathLike[str] | None = None, program: str | os.PathLike[str] | None = None) -> Run:
     """Runs a scene to its end and returns its results.
 
     scene     path of a scene file; or a scene as a dictionary, which is written to the file OUT.yaml beside the folder OUT (see
@@ -66,6 +66,7 @@ def run(scene: Scene, *, set: Mapping[str, Any] | None = None, out: str | os.Pat
     strict    balances that do not close are an error
     force     replaces a run that was stopped or has failed and could be resumed
     until     stops after this number of steps with a checkpoint; the status is then "stopped"
+    script    file with functions start, step, history and end, which the run calls between its steps; what it prints is in `Run.log`
     program   the program talus; default: `find_program`
 
     Raises SceneError for wrong input, with the place of each error, RunFailed if the run fails, EnvironmentFailure for a full disk or a
@@ -76,6 +77,8 @@ def run(scene: Scene, *, set: Mapping[str, Any] | None = None, out: str | os.Pat
     folder = Path(out) if out is not None else default_folder(scene)
     file = write_scene(scene, folder.parent / f"{folder.name}.yaml") if isinstance(scene, Mapping) else Path(scene)
     words = ["run", str(file), "--out", str(folder), *set_options(set), *_options(threads, quick=quick, strict=strict, force=force)]
+    if script is not None:
+        words += ["--script", str(Path(script).absolute())]
     return _follow(found, [*words, *(["--until", str(until)] if until is not None else [])], folder, progress)
 
 

@@ -286,6 +286,15 @@ TEST(Scene, ReadsOutputs)
   EXPECT_FALSE(out.picture.mesh);
 }
 
+TEST(Scene, ReadsItsScript)
+{
+  const ScriptSpec script = scene("plane.yaml").script.value();
+  EXPECT_EQ(script.file, "hooks.py");
+  EXPECT_EQ(script.every, 20);
+  EXPECT_FALSE(scene("solid.yaml").script);
+  EXPECT_EQ(ScriptSpec().every, 1);
+}
+
 TEST(Scene, AccuracyScalesTheCellsAndSetsWhatIsLeftOpen)
 {
   const auto with = [](const std::string& name, const std::string& accuracy) {
