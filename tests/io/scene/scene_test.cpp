@@ -72,23 +72,6 @@ TEST(Scene, ReadsWhatBeginsAsAnotherRunLeftIt)
   EXPECT_FALSE(scene("plane.yaml").initial.has_value());
 }
 
-TEST(Scene, ReadsTheTableThatABodyStartsWith)
-{
-  const Scene s = scene("shapes.yaml");
-  EXPECT_FALSE(s.bodies.at(1).initial.has_value());
-  const StartStateSpec start = s.bodies.at(0).initial.value();
-  EXPECT_EQ(start.table, "states/fe.csv");
-  EXPECT_EQ(start.sign, StressSign::compression_positive);
-  EXPECT_EQ(start.unit, StressUnit::kPa);
-  EXPECT_EQ(start.stress, StressMeant::effective);
-  EXPECT_EQ(start.data, PointsOf::cells);
-  EXPECT_EQ(start.select.value().column, "material");
-  EXPECT_EQ(start.select.value().value, "2");
-  EXPECT_EQ(start.reach, 1.5);
-  EXPECT_EQ(start.velocity, Carried::zero);
-  EXPECT_EQ(start.displacement, Carried::keep);
-}
-
 TEST(Scene, ReadsInlineGeometry)
 {
   const MeshSpec mesh = scene("plane.yaml").mesh;
@@ -286,15 +269,6 @@ TEST(Scene, ReadsOutputs)
   EXPECT_FALSE(out.picture.mesh);
 }
 
-TEST(Scene, ReadsItsScript)
-{
-  const ScriptSpec script = scene("plane.yaml").script.value();
-  EXPECT_EQ(script.file, "hooks.py");
-  EXPECT_EQ(script.every, 20);
-  EXPECT_FALSE(scene("solid.yaml").script);
-  EXPECT_EQ(ScriptSpec().every, 1);
-}
-
 TEST(Scene, AccuracyScalesTheCellsAndSetsWhatIsLeftOpen)
 {
   const auto with = [](const std::string& name, const std::string& accuracy) {
@@ -378,24 +352,6 @@ TEST(Scene, SaysHowWaterFlows)
   EXPECT_EQ(flow.rain.value().rate, 1e-6);
   EXPECT_EQ(flow.pace(0), 100);
   EXPECT_EQ(flow.surface, SurfaceFlow::drained);
-}
-
-TEST(Scene, ReadsLawsOfTheUserWithoutTheirLibraries)
-{
-  const Scene s = read_scene(folder / "own_laws.yaml", {}, Libraries::closed);
-  const auto& own = std::get<LawBySymbol>(choices_of(s.materials.at(0).law));
-  EXPECT_EQ(own.library, "laws/libsoil.so");
-  EXPECT_EQ(own.symbol, "soil");
-  EXPECT_TRUE(own.serial);
-  ASSERT_EQ(own.parameters.all.size(), 2U);
-  EXPECT_EQ(own.parameters.all[1].name, "cohesion");
-  EXPECT_EQ(*own.parameters.find("cohesion"), 5e3);
-  EXPECT_FALSE(s.materials.at(0).law.is_open());
-  const auto& umat = std::get<UmatLaw>(choices_of(s.materials.at(1).law));
-  EXPECT_THAT(umat.constants, ElementsAre(1e7, 0.3));
-  EXPECT_EQ(umat.depvar, 2);
-  EXPECT_THAT(umat.initial_statev, ElementsAre(0, 1));
-  EXPECT_THROW(s.materials.at(0).law.model(), Error);
 }
 
 TEST(Scene, ExamplesUseEveryKeyThereIs)
