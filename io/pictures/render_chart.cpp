@@ -12,7 +12,6 @@
 #include <vtkNew.h>
 #include <vtkPen.h>
 #include <vtkPlot.h>
-#include <vtkPlotPoints.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkStringArray.h>
@@ -35,7 +34,6 @@ namespace {
 
 constexpr std::array<int, 2> size{960, 600};  // in pixels
 constexpr int letter = 15 * oversampling;     // in pixels
-constexpr float mark = 9;                     // in pixels
 constexpr Real headroom = 0.05;               // fraction of the range of y, above and below
 
 /// Colours of Okabe and Ito (2008), distinguishable with any kind of colour blindness.
@@ -74,7 +72,7 @@ vtkSmartPointer<vtkTable> curve(const std::string& name, const std::vector<Real>
   return table;
 }
 
-vtkPlot* add(vtkChartXY* chart, vtkTable* table, std::size_t number)
+void add(vtkChartXY* chart, vtkTable* table, std::size_t number)
 {
   vtkPlot* plot = chart->AddPlot(vtkChart::LINE);
   plot->SetInputData(table, 0, 1);
@@ -83,7 +81,6 @@ vtkPlot* add(vtkChartXY* chart, vtkTable* table, std::size_t number)
   plot->SetWidth((number == 0 ? 2.5F : 1.8F) * oversampling);
   if (number > 0)
     plot->GetPen()->SetLineType(number % 2 == 1 ? vtkPen::DASH_LINE : vtkPen::DASH_DOT_LINE);
-  return plot;
 }
 
 void letter_axis(vtkAxis* axis, const std::string& title)
@@ -112,20 +109,6 @@ void show_span(vtkAxis* axis, Real low, Real high, Real margin)
   axis->SetCustomTickPositions(places, words);
 }
 
-/// Sets the range of a logarithmic axis from `low` to `high` with a relative margin on either side, and ticks at powers of ten.
-void show_decades(vtkAxis* axis, Real low, Real high, Real margin)
-{
-  axis->SetBehavior(vtkAxis::FIXED);
-  axis->SetRange(low - margin * (high - low), high + margin * (high - low));
-  vtkNew<vtkDoubleArray> places;
-  vtkNew<vtkStringArray> words;
-  for (Real decade = std::ceil(low); decade <= high; ++decade) {
-    places->InsertNextValue(decade);
-    words->InsertNextValue(fmt::format("{:g}", std::pow(10, decade)));
-  }
-  axis->SetCustomTickPositions(places, words);
-}
-
 /// Merges levels of equal height, which share a line and a label.
 std::vector<Chart::Level> merged(const std::vector<Chart::Level>& levels)
 {
@@ -148,26 +131,12 @@ std::vector<Real> values_of(vtkDataArray* column, Real factor = 1)
   return values;
 }
 
-/// The logarithms to base ten.  Values that are not positive lie a decade below the smallest positive one.
-std::vector<Real> logarithms(const std::vector<Real>& values)
-{
-  Real least = 1;
-  for (const Real value : values)
-    least = value > 0 ? std::min(least, value) : least;
-  std::vector<Real> logs;
-  for (const Real value : values)
-    logs.push_back(std::log10(value > 0 ? value : 0.1 * least));
-  return logs;
-}
-
-/// The range of x of rows and vertical lines.
+/// The range of x.
 std::pair<Real, Real> reach_along(const Chart& chart, const std::vector<Real>& x)
 {
   if (x.empty())
     throw Error(fmt::format("{} has no rows to draw", chart.table.string()));
-  auto [low, high] = std::pair{*std::min_element(x.begin(), x.end()), *std::max_element(x.begin(), x.end())};
-  for (const Chart::Level& line : chart.uprights)
-    low = std::min(low, line.value), high = std::max(high, line.value);
+  const auto [low, high] = std::pair{*std::min_element(x.begin(), x.end()), *std::max_element(x.begin(), x.end())};
   return {low, low < high ? high : low + 1};
 }
 
@@ -217,41 +186,22 @@ void draw(const Chart& chart)
     low = std::min(low, level.value);
     high = std::max(high, level.value);
   }
-  const ScaledUnit unit = chart.log ? ScaledUnit{1, y_unit} : scaled_unit(y_unit, std::max(-low, high));
+  const ScaledUnit unit = scaled_unit(y_unit, std::max(-low, high));
   const std::vector<Real> x = values_of(column_of(table, chart.x));
-  std::vector<Real> y = values_of(y_column, unit.factor);
+  const std::vector<Real> y = values_of(y_column, unit.factor);
   low *= unit.factor, high *= unit.factor;
-  if (chart.log) {
-    const std::vector<Real> shown = logarithms(y);
-    y = shown;
-    low = std::floor(*std::min_element(y.begin(), y.end())), high = std::ceil(*std::max_element(y.begin(), y.end()));
-    high = std::max(high, low + 1);
-  }
 
   vtkNew<vtkChartXY> plot;
   letter_chart(plot, chart.title);
   letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", x_name, x_unit));
   letter_axis(plot->GetAxis(vtkAxis::LEFT), fmt::format("{} [{}]", y_name, unit.name));
   const auto [first, last] = reach_along(chart, x);
-  show_span(plot->GetAxis(vtkAxis::BOTTOM), first, last, chart.marks ? headroom : 0);  // marks are wider than their points
-  if (chart.log)
-    show_decades(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
-  else
-    show_span(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
-  vtkPlot* const drawn = add(plot, curve(chart.curve, x, y), 0);
-  if (auto* marked = vtkPlotPoints::SafeDownCast(drawn); marked != nullptr && chart.marks) {
-    marked->SetMarkerStyle(vtkPlotPoints::CIRCLE);
-    marked->SetMarkerSize(mark * oversampling);
-  }
+  show_span(plot->GetAxis(vtkAxis::BOTTOM), first, last, 0);
+  show_span(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
+  add(plot, curve("driven", x, y), 0);
   const std::vector<Chart::Level> levels = merged(chart.levels);
   for (std::size_t i = 0; i < levels.size(); ++i)
-    add(plot,
-        curve(levels[i].name, {x.front(), x.back()},
-              std::vector<Real>(2, chart.log ? std::log10(levels[i].value) : unit.factor * levels[i].value)),
-        i + 1);
-  for (std::size_t i = 0; i < chart.uprights.size(); ++i)
-    add(plot, curve(chart.uprights[i].name, std::vector<Real>(2, chart.uprights[i].value), {low, high}), levels.size() + i + 1);
-
+    add(plot, curve(levels[i].name, {x.front(), x.back()}, std::vector<Real>(2, unit.factor * levels[i].value)), i + 1);
   put_on_paper(plot, chart.out);
 }
 

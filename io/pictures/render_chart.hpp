@@ -16,11 +16,7 @@ struct Chart {
     std::string name;
     Real value;  ///< in the unit of y
   };
-  std::vector<Level> levels;     ///< horizontal lines
-  std::vector<Level> uprights;   ///< vertical lines, in the unit of x
-  std::string curve = "driven";  ///< label of the curve
-  bool marks = false;            ///< whether each row has a mark
-  bool log = false;              ///< whether y is logarithmic
+  std::vector<Level> levels;  ///< horizontal lines
   std::string title;
   std::filesystem::path out;  ///< .png
 };

@@ -27,11 +27,7 @@ Chart parse_chart(std::span<const std::string> arguments)
   app.add_option("--y", chart.y)->required();
   app.add_option("--title", chart.title);
   app.add_option("--out", chart.out)->required();
-  app.add_option("--curve", chart.curve);
-  app.add_flag("--marks", chart.marks);
-  app.add_flag("--log", chart.log);
   add_lines(app, "--level", chart.levels);
-  add_lines(app, "--upright", chart.uprights);
   std::vector<std::string> problems;
   parse_words(app, arguments, problems);
   require_none(problems);

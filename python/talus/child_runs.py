@@ -72,7 +72,7 @@ class ChildRuns:
                 process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
         except OSError as error:
             hint = f": is there no {words[0]}?" if self.launcher else ""
-            raise EnvironmentFailure(f"{run.folder} cannot be started: {error}{hint}", 3) from error
+            raise EnvironmentFailure(f"{run.folder} cannot be started{hint} ({error})", 3) from error
         self._running.append((run, process, time.monotonic()))
 
     def look(self) -> list[Ended]:

@@ -316,8 +316,7 @@ std::string usage()
   return "Draws the particles of DIR/particles.pvd, writes the surface of bodies, draws DIR/maps and DIR/sections, or a curve of a table.\n"
          "Pictures need a display; `talus render` brings one.\n\n" +
          help<Settings>("talus-render") + help<SurfaceSettings>("talus-render surface") + help<MapSettings>("talus-render map") +
-         "talus-render chart TABLE.csv --x COLUMN --y COLUMN [--level NAME VALUE]... [--upright NAME VALUE]... [--curve NAME] [--marks] "
-         "[--log] [--title TEXT] --out FILE.png\n";
+         "talus-render chart TABLE.csv --x COLUMN --y COLUMN [--level NAME VALUE]... [--title TEXT] --out FILE.png\n";
 }
 
 }  // namespace talus::render

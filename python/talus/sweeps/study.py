@@ -1,7 +1,6 @@
 """The file of a sweep: a scene, what varies, and what is collected from each case."""
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import dataclass, field
 from pathlib import Path

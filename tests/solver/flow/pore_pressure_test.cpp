@@ -1,6 +1,7 @@
 // Water that flows through pores: closed forms of consolidation and seepage, what must be kept, and water that is nearly incompressible.
 #include <numbers>
 
+#include "solver/model/seepage.hpp"
 #include "tests/solver/flow/saturated_soil.hpp"
 
 namespace talus::pore_pressure_test {
