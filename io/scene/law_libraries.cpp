@@ -6,7 +6,6 @@
 
 #include "core/error.hpp"
 #include "io/output/output_fields.hpp"
-#include "io/system/law_crash.hpp"
 #include "io/system/law_library.hpp"
 #include "materials/interface/law_variant.hpp"
 #include "materials/interface/umat.hpp"
@@ -96,10 +95,7 @@ class Opener {
   {
     std::optional<LawLibrary> library;
     if (!law.library.empty() && law.density > 0)
-      attempt("library", [&] {
-        name_laws_in_crashes();
-        library.emplace(folder_ / law.library);
-      });
+      attempt("library", [&] { library.emplace(folder_ / law.library); });
     return library;
   }
 

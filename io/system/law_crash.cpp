@@ -39,41 +39,33 @@ std::string_view name_of_signal(int signal) noexcept
   }
 }
 
-extern "C" void name_law_and_die(int signal)
+}  // namespace
+
+bool write_law_at_work(int signal) noexcept
 {
-  if (const LawCall& call = law_call_of_thread(); call.law != nullptr) {
-    write_words("error: law ");
-    write_words(call.law);
+  const LawCall& call = law_call_of_thread();
+  if (call.law == nullptr)
+    return false;
+  write_words("error: law ");
+  write_words(call.law);
+  if (signal == 0)
+    write_words(" ended the process");
+  else {
     write_words(" crashed (");
     write_words(name_of_signal(signal));
     write_words(")");
-    if (call.last >= 0) {
-      write_words(" in a block of particles, from ");
-      write_number(call.first);
-      write_words(" to ");
-      write_number(call.last);
-      write_words(", t = ");
-      write_number(call.time);
-      write_words(" s");
-    }
-    write_words("\n");
   }
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
-}
-
-}  // namespace
-
-void name_laws_in_crashes()
-{
-  for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) {
-    struct sigaction before {};
-    if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL) {
-      struct sigaction action {};
-      action.sa_handler = name_law_and_die;
-      ::sigaction(signal, &action, nullptr);
-    }
+  if (call.last >= 0) {
+    write_words(" in a block of particles, from ");
+    write_number(call.first);
+    write_words(" to ");
+    write_number(call.last);
+    write_words(", t = ");
+    write_number(call.time);
+    write_words(" s");
   }
+  write_words("; what is written so far is whole\n");
+  return true;
 }
 
 }  // namespace talus

@@ -1,10 +1,10 @@
 #pragma once
-// Names the law of the user in which the process crashes.
+// Names the law of the user in which the process ends.
 
 namespace talus {
 
-/// From now on a crash (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT) in a law of the user writes which law it was, of which library, at which particles
-/// and when, before it ends the process.  Signals for which there is a handler keep it.
-void name_laws_in_crashes();
+/// Writes to standard error which law of the user this thread was calling: of which library, for which particles, when.  `signal`: the fault, or 0
+/// if the process ends by exit().  False, and nothing written, if it was calling none.  For handlers of signals: it allocates nothing.
+bool write_law_at_work(int signal) noexcept;
 
 }  // namespace talus

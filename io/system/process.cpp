@@ -21,12 +21,13 @@
 #include "core/library_call.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
+#include "io/system/law_crash.hpp"
 
 namespace talus {
 
 namespace {
 
-constexpr int environment_wrong = 3;
+constexpr int law_wrong = 1, environment_wrong = 3;
 volatile std::sig_atomic_t leaving = 0;
 
 void write_error(std::string_view text) noexcept
@@ -50,19 +51,24 @@ extern "C" [[maybe_unused]] void at_fault(int number)
 {
   if (!library_at_work().empty())
     end_in_library();
-  std::array<char, 8> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-  write_error("error: a fault, signal ");
-  write_error({digits.data(), static_cast<std::size_t>(end - digits.data())});
-  write_error(": a mistake in the program, or in a library that found no memory; what is written so far is whole\n");
+  if (!write_law_at_work(number)) {
+    std::array<char, 8> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+    write_error("error: a fault, signal ");
+    write_error({digits.data(), static_cast<std::size_t>(end - digits.data())});
+    write_error(": a mistake in the program, or in a library that found no memory; what is written so far is whole\n");
+  }
   std::signal(number, SIG_DFL);
   std::raise(number);
 }
 
 extern "C" void at_exit(int, void*)
 {
-  if (leaving == 0)
-    end_in_library();
+  if (leaving != 0)
+    return;
+  if (write_law_at_work(0))
+    ::_exit(law_wrong);
+  end_in_library();
 }
 
 volatile std::sig_atomic_t memory_ran_out = 0;
@@ -116,7 +122,7 @@ void prepare_process()
   struct sigaction action {};
   action.sa_handler = at_fault;
   action.sa_flags = SA_ONSTACK | static_cast<int>(SA_RESETHAND);
-  for (const int number : {SIGSEGV, SIGBUS, SIGABRT})
+  for (const int number : {SIGSEGV, SIGBUS, SIGABRT, SIGILL, SIGFPE})
     ::sigaction(number, &action, nullptr);
 #endif
   if (threads() > most_threads())
