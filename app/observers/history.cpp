@@ -118,7 +118,11 @@ Vec<D> attack(const Vec<D>& force, const Vec3& moment, const Vec<D>& normal, con
 template <int D>
 std::vector<CsvColumn> joined(std::vector<CsvColumn> columns, const OwnColumns<D>& own)
 {
-  columns.insert(columns.end(), own.columns.begin(), own.columns.end());
+  for (const CsvColumn& column : own.columns) {
+    if (std::ranges::any_of(columns, [&](const CsvColumn& other) { return other.name == column.name; }))
+      throw RunError(fmt::format("the script adds a column \"{}\", which history.csv has already: take another name", column.name));
+    columns.push_back(column);
+  }
   return columns;
 }
 

@@ -175,6 +175,9 @@ void ScriptOfRun<D>::visit(const RunView<D>& view, std::optional<VelocityChange>
   } catch (const RunError& error) {
     host_->give_up();
     throw RunError(fmt::format("step {}, t = {:.6g} s: {}", view.state.clock.step, view.state.clock.time, error.what()));
+  } catch (...) {
+    host_->give_up();
+    throw;
   }
   host_->finish();
 }
@@ -210,7 +213,8 @@ void ScriptOfRun<D>::before_files(const RunView<D>& view, RunEvent event, Real& 
   if (!script_ || std::exchange(began_, true))
     return;
   StopWatch watch;
-  call(start_function, view, event == RunEvent::stage_begins ? std::optional(VelocityChange::at_start) : std::nullopt);
+  call(start_function, view,
+       event == RunEvent::stage_begins && view.state.clock.step == 0 ? std::optional(VelocityChange::at_start) : std::nullopt);
   watch.lap(seconds);
 }
 

@@ -95,7 +95,8 @@ void start_python()
   std::atexit(end_python);
   const PythonInUse use;
   for (const char* const stream : {"stdout", "stderr"})
-    py::module_::import("sys").attr(stream).attr("reconfigure")(py::arg("line_buffering") = true);
+    if (const py::object there = py::module_::import("sys").attr(stream); !there.is_none())
+      there.attr("reconfigure")(py::arg("line_buffering") = true);
   import_numpy();
 }
 
@@ -119,16 +120,18 @@ py::dict read_script(const std::string& file)
   return names;
 }
 
-void throw_located(py::error_already_set& error, const std::string& file)
+std::string place_of(py::error_already_set& error, const std::string& file, bool with_traceback)
 {
-  std::string message;
   try {
-    message = located(error, file);
-    py::module_::import("traceback").attr("print_exception")(error.type(), error.value(), error.trace() ? error.trace() : py::none());
+    std::string message = located(error, file);
+    if (with_traceback)
+      py::module_::import("traceback").attr("print_exception")(error.type(), error.value(), error.trace() ? error.trace() : py::none());
+    return message;
   } catch (const py::error_already_set& another) {  // of the text of the exception
-    message = fmt::format("{}: {}", file, another.what());
+    return fmt::format("{}: {}", file, another.what());
   }
-  throw RunError(message);
 }
+
+void throw_located(py::error_already_set& error, const std::string& file) { throw RunError(place_of(error, file, true)); }
 
 }  // namespace talus

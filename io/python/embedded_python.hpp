@@ -5,7 +5,11 @@
 #include <pybind11/stl.h>
 
 #include <cfenv>
+#include <memory>
 #include <string>
+
+#include "io/python/python_script.hpp"
+#include "materials/interface/talus_law.h"
 
 namespace talus {
 
@@ -30,8 +34,14 @@ class PythonInUse {
 /// if there is no such file.
 pybind11::dict read_script(const std::string& file);
 
-/// Prints the traceback of an exception on standard error and throws RunError with its place: the last line of `file` in the traceback, or
-/// else the last line of all.
+/// An exception with its place, the last line of `file` in the traceback or else the last line of all: "hooks.py:4: in step(): KeyError: 'a'".
+/// Prints the traceback on standard error if asked.
+std::string place_of(pybind11::error_already_set& error, const std::string& file, bool with_traceback);
+/// Prints the traceback of an exception and throws RunError with its place.
 [[noreturn]] void throw_located(pybind11::error_already_set& error, const std::string& file);
+
+/// What the plugin offers: see open_python_script() and open_python_law().
+std::unique_ptr<PythonScript> embedded_script(const std::string& file);
+const talus_law* embedded_law(const std::string& file, const std::string& name);
 
 }  // namespace talus

@@ -175,23 +175,16 @@ class EmbeddedScript final : public PythonScript {
   {
     const PythonInUse use;
     try {
-      globals_ = read_script(file_);
-      py::module_::import("_talus_run");
-      simulation_ = py::cast(ScriptSimulation{host_});
-    } catch (py::error_already_set& error) {
-      throw_located(error, file_);
+      read();
+    } catch (...) {
+      forget();  // while Python is in use
+      throw;
     }
-    for (const std::string_view one : {start_function, step_function, end_function, history_function})
-      check(one);
-    if (!has(start_function) && !has(step_function) && !has(end_function) && !has(history_function))
-      throw RunError(fmt::format("{}: it has none of the functions start, step, history and end", file_));
-    read_columns();
   }
   ~EmbeddedScript() override
   {
     const PythonInUse use;
-    globals_ = py::object();
-    simulation_ = py::object();
+    forget();
   }
   EmbeddedScript(const EmbeddedScript&) = delete;
   EmbeddedScript& operator=(const EmbeddedScript&) = delete;
@@ -230,6 +223,27 @@ class EmbeddedScript final : public PythonScript {
   }
 
  private:
+  void read()
+  {
+    try {
+      globals_ = read_script(file_);
+      py::module_::import("_talus_run");
+      simulation_ = py::cast(ScriptSimulation{host_});
+    } catch (py::error_already_set& error) {
+      throw_located(error, file_);
+    }
+    for (const std::string_view one : {start_function, step_function, end_function, history_function})
+      check(one);
+    if (!has(start_function) && !has(step_function) && !has(end_function) && !has(history_function))
+      throw RunError(fmt::format("{}: it has none of the functions start, step, history and end", file_));
+    read_columns();
+  }
+  void forget()
+  {
+    globals_ = py::object();
+    simulation_ = py::object();
+  }
+
   /// The host is that of the run during a call.
   class Visit {
    public:
@@ -264,7 +278,10 @@ class EmbeddedScript final : public PythonScript {
     for (const auto& [name, unit] : given.cast<py::dict>()) {
       if (!py::isinstance<py::str>(name) || !py::isinstance<py::str>(unit))
         throw RunError(fmt::format("{}: columns has an entry that is not \"name\": \"unit\"", file_));
-      columns_.emplace_back(name.cast<std::string>(), unit.cast<std::string>());
+      const auto key = name.cast<std::string>();
+      if (key.empty() || key.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") != std::string::npos)
+        throw RunError(fmt::format("{}: columns has the name \"{}\": names have letters, digits and underscores", file_, key));
+      columns_.emplace_back(key, unit.cast<std::string>());
     }
   }
 
@@ -286,17 +303,12 @@ class EmbeddedScript final : public PythonScript {
   std::vector<std::pair<std::string, std::string>> columns_;
 };
 
-std::unique_ptr<PythonScript> open(const std::string& file)
+}  // namespace
+
+std::unique_ptr<PythonScript> embedded_script(const std::string& file)
 {
   start_python();
   return std::make_unique<EmbeddedScript>(file);
 }
 
-}  // namespace
-
 }  // namespace talus
-
-extern "C" {
-extern const talus::PythonPart talus_python_part;
-const talus::PythonPart talus_python_part{talus::open};
-}

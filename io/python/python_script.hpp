@@ -1,6 +1,5 @@
 #pragma once
-// A script in Python that a run calls between its steps: what it can see of the run, and access to the interpreter, which is in a plugin
-// (libtalus_python.so), because few runs need it.
+// A script in Python that a run calls between its steps, and what it can see of the run.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -81,11 +80,6 @@ class PythonScript {
   virtual void call(std::string_view function, ScriptHost& host) = 0;
   /// The values of its columns from history().  Throws RunError.
   virtual std::vector<Real> row(ScriptHost& host) = 0;
-};
-
-/// The functions of the plugin.
-struct PythonPart {
-  std::unique_ptr<PythonScript> (*open)(const std::string& file);
 };
 
 /// Starts Python, if it does not run, and reads a script.  Throws RunError, as PythonScript::call(), for what is wrong in the script, and

@@ -1,6 +1,7 @@
 #pragma once
 // Opens the libraries of laws of the user.
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,9 @@
 namespace talus {
 
 /// Opens the library that a law names, relative to the scene file, and gives it the parameters of the scene.  Does nothing for laws of the program.
-/// Returns what is wrong; `path` is that of the mapping with the law, such as "materials[0]".
-std::vector<Finding> open_library(const std::filesystem::path& scene_file, const std::string& path, AnyLaw& law);
+/// Returns what is wrong; `path` is that of the mapping with the law, such as "materials[0]".  `others`: laws of the user in the same scene, with
+/// which it may share history variables of the same form.
+std::vector<Finding> open_library(const std::filesystem::path& scene_file, const std::string& path, AnyLaw& law,
+                                  std::span<const LawDescription* const> others = {});
 
 }  // namespace talus

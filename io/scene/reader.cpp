@@ -291,6 +291,19 @@ void add_findings(Document& document, const std::vector<Finding>& findings)
   }
 }
 
+void open_libraries(Document& document, const std::filesystem::path& file, Scene& scene)
+{
+  std::vector<const LawDescription*> opened;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    AnyLaw& law = scene.materials[i].law;
+    if (law.is_open())
+      continue;
+    add_findings(document, open_library(file, fmt::format("materials[{}]", i), law, opened));
+    if (law.is_open())
+      opened.push_back(&law.description());
+  }
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides, Libraries libraries)
@@ -305,8 +318,7 @@ Scene read_scene_text(const std::filesystem::path& file, const std::string& text
   Scene scene;
   FieldReader(document.problems).read(document.root, "", scene);
   if (libraries == Libraries::opened)
-    for (std::size_t i = 0; i < scene.materials.size(); ++i)
-      add_findings(document, open_library(file, fmt::format("materials[{}]", i), scene.materials[i].law));
+    open_libraries(document, file, scene);
   add_findings(document, broken_rules(scene));
   document.problems.throw_if_any();
   settle_accuracy(scene);

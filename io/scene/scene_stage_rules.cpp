@@ -2,10 +2,23 @@
 #include <map>
 
 #include "io/scene/scene_rule_base.hpp"
+#include "materials/interface/law_variant.hpp"
 
 namespace talus {
 
 namespace {
+
+bool suspends_yielding(const StageSpec& stage)
+{
+  return std::visit(
+      []<class S>(const S& spec) {
+        if constexpr (requires { spec.elastic; })
+          return spec.elastic;
+        else
+          return false;
+      },
+      stage);
+}
 
 class StageRules : private SceneRuleBase {
  public:
@@ -43,6 +56,8 @@ class StageRules : private SceneRuleBase {
     const std::string at = fmt::format("stages[{}]", s);
     if (is_solved(scene_.stages[static_cast<std::size_t>(s)]))
       solved(at);
+    if (suspends_yielding(scene_.stages[static_cast<std::size_t>(s)]))
+      knows_no_suspension(at + ".elastic");
     for (std::size_t i = 0; i < changes.appear.size(); ++i)
       appears(fmt::format("{}.appear[{}]", at, i), changes.appear[i], s, i);
     for (std::size_t i = 0; i < changes.vanish.size(); ++i)
@@ -86,6 +101,15 @@ class StageRules : private SceneRuleBase {
     refuse(!scene_.contacts.empty(), "contacts");
     refuse(!scene_.cuts.empty(), "cuts");
     refuse(!scene_.rigid.empty(), "rigid bodies");
+  }
+
+  void knows_no_suspension(const std::string& path)
+  {
+    for (const MaterialSpec& material : scene_.materials)
+      if (std::holds_alternative<UmatLaw>(choices_of(material.law)))
+        add(path, fmt::format("the subroutine of material \"{}\" cannot suspend yielding: give elastic: false, with which "
+                              "it yields",
+                              material.name));
   }
 
   void appears(const std::string& path, const std::string& body, Index s, std::size_t place)

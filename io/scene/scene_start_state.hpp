@@ -39,15 +39,15 @@ struct SelectSpec {
 };
 
 struct StartStateSpec {
-  std::string table;
+  std::string table{};
   StressSign sign = StressSign::tension_positive;
   StressUnit unit = StressUnit::Pa;
   StressMeant stress = StressMeant::as_named;
   PointsOf data = PointsOf::automatic;
-  std::optional<SelectSpec> select;
-  std::optional<Real> reach;
+  std::optional<SelectSpec> select{};
+  std::optional<Real> reach{};
   Carried velocity = Carried::keep, displacement = Carried::zero;
-  SourceLocation where;
+  SourceLocation where{};
   static constexpr auto fields()
   {
     return std::tuple{

@@ -20,23 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string digest_of_file(const fs::path& file)
-{
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream)
-    throw Error(fmt::format("{} cannot be read", file.string()));
-  return fmt::format("{:016x}", digest_of(std::as_bytes(std::span(bytes)), 0));
-}
-
 /// Throws Error for what is certainly no library.
-void check_file(const fs::path& file)
+void check_extension(const fs::path& file)
 {
-  std::error_code unreadable;
-  if (!fs::exists(file, unreadable))
-    throw Error(fmt::format("there is no file {}", file.string()));
-  if (fs::is_directory(file, unreadable))
-    throw Error(fmt::format("{} is a folder", file.string()));
   static constexpr std::array<std::string_view, 8> sources{".c", ".cc", ".cpp", ".cxx", ".f", ".for", ".f90", ".py"};
   if (std::ranges::find(sources, file.extension().string()) != sources.end())
     throw Error(fmt::format("{} is source text: compile it to a shared library, cc -O2 -shared -fPIC", file.string()));
@@ -44,10 +30,23 @@ void check_file(const fs::path& file)
 
 }  // namespace
 
-LawLibrary::LawLibrary(const fs::path& file)
+std::string digest_of_law_file(const fs::path& file)
 {
-  check_file(file);
-  digest_ = digest_of_file(file);
+  std::error_code unreadable;
+  if (!fs::exists(file, unreadable))
+    throw Error(fmt::format("there is no file {}", file.string()));
+  if (fs::is_directory(file, unreadable))
+    throw Error(fmt::format("{} is a folder", file.string()));
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream)
+    throw Error(fmt::format("{} cannot be read", file.string()));
+  return fmt::format("{:016x}", digest_of(std::as_bytes(std::span(bytes)), 0));
+}
+
+LawLibrary::LawLibrary(const fs::path& file) : digest_(digest_of_law_file(file))
+{
+  check_extension(file);
   std::fenv_t before;  // a library that was linked with -ffast-math changes how denormal numbers are treated
   std::fegetenv(&before);
   // A path, not a name that would be searched; on every rank and for every material the same library.

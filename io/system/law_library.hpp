@@ -6,6 +6,9 @@
 
 namespace talus {
 
+/// 16 digits that change with a file of the user with a law.  Throws Error, with the reason in words, if there is no such file.
+std::string digest_of_law_file(const std::filesystem::path& file);
+
 /// A library that was opened.  It is never closed, since what it has registered may be called at the end of the program.
 class LawLibrary {
  public:
@@ -18,8 +21,8 @@ class LawLibrary {
   const std::string& digest() const noexcept { return digest_; }
 
  private:
-  void* handle_;
   std::string digest_;
+  void* handle_;
 };
 
 }  // namespace talus

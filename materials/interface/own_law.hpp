@@ -18,7 +18,7 @@ struct LawInLibrary {
   Real density{};
   std::string library;
   bool serial = false;
-  std::shared_ptr<const ConstitutiveLaw> opened{};  ///< set when the library is opened, see io/scene/own_laws.hpp
+  std::shared_ptr<const ConstitutiveLaw> opened{};  ///< set when the library is opened, see io/scene/law_libraries.hpp
 };
 
 /// The fields that every law of the user has.
@@ -26,7 +26,8 @@ template <class Law>
 constexpr auto library_fields()
 {
   return std::tuple{required<Law, Real>("density", &Law::density, positive, "kg/m^3", "mass density at rest"),
-                    required<Law, std::string>("library", &Law::library, any, "-", "shared library with the law, relative to this file"),
+                    required<Law, std::string>("library", &Law::library, any, "-",
+                                               "shared library with the law, or own: a file in Python (.py), relative to this file"),
                     optional<Law, bool>("serial", &Law::serial, any, "-",
                                         "the library is called by one thread at a time: for code that writes to global variables")};
 }
@@ -35,15 +36,18 @@ constexpr auto library_fields()
 struct LawBySymbol : LawInLibrary {
   static constexpr std::string_view name = "own";
   static constexpr std::string_view summary =
-      "A law of your own: a shared library with the C interface talus_law.h, which says what parameters and history it has.";
+      "A law of your own: a shared library with the C interface talus_law.h, or a class in Python, which says what parameters and history "
+      "it "
+      "has.";
   std::string symbol;
   NamedNumbers parameters;
   static constexpr auto fields()
   {
     using Law = LawBySymbol;
-    return std::tuple_cat(library_fields<Law>(),
-                          std::tuple{required("symbol", &Law::symbol, any, "-", "function of the library that returns the law"),
-                                     optional("parameters", &Law::parameters, any, "-", "parameters of the law by their names")});
+    return std::tuple_cat(
+        library_fields<Law>(),
+        std::tuple{required("symbol", &Law::symbol, any, "-", "function of the library that returns the law, or class in Python"),
+                   optional("parameters", &Law::parameters, any, "-", "parameters of the law by their names")});
   }
 };
 

@@ -18,8 +18,8 @@ class OwnLawBlock {
   void open(std::size_t stride, bool with_strain)
   {
     stride_ = stride;
-    numbers_.resize(rows * stride_);
-    id_.resize(stride_);
+    if (id_.size() < stride_)
+      numbers_.resize(rows * stride_), id_.resize(stride_);
     with_strain_ = with_strain;
   }
   std::size_t stride() const noexcept { return stride_; }

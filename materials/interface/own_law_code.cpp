@@ -83,6 +83,14 @@ std::string limits_of(const talus_law_parameter& one)
   return std::isinf(one.low) ? fmt::format("at most {:.6g}", one.high) : fmt::format("from {:.6g} to {:.6g}", one.low, one.high);
 }
 
+std::optional<std::string> limit_broken(const OwnLawCode& code, const talus_law_parameter& one, Real value)
+{
+  if (!has_limits(one) || (one.low <= value && value <= one.high))
+    return std::nullopt;
+  return fmt::format("{:.6g} is not allowed: {} [{}] of the law {} is {}", value, one.key, text_of(one.unit, "-"), code.description().name,
+                     limits_of(one));
+}
+
 }  // namespace
 
 OwnLawCode::OwnLawCode(const talus_law& law, OwnLawOrigin origin) : origin_(std::move(origin))
@@ -111,6 +119,14 @@ OwnLawCode::OwnLawCode(const talus_law& law, OwnLawOrigin origin) : origin_(std:
                   .is_fluid = (law.flags & TALUS_LAW_FLUID) != 0};
 }
 
+std::optional<std::string> beyond_limits(const OwnLawCode& code, std::span<const Real> values)
+{
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (auto wrong = limit_broken(code, code.parameters()[i], values[i]))
+      return wrong;
+  return std::nullopt;
+}
+
 OwnLawValues values_of(const OwnLawCode& code, const NamedNumbers& given)
 {
   OwnLawValues result;
@@ -126,9 +142,8 @@ OwnLawValues values_of(const OwnLawCode& code, const NamedNumbers& given)
     if (value == nullptr && std::isnan(one.value))
       result.problems.push_back({"", fmt::format("missing parameter \"{}\" [{}] of the law {}: {}", one.key, text_of(one.unit, "-"),
                                                  code.description().name, text_of(one.meaning, one.key))});
-    else if (value != nullptr && has_limits(one) && !(one.low <= *value && *value <= one.high))
-      result.problems.push_back({one.key, fmt::format("{:.6g} is not allowed: {} [{}] of the law {} is {}", *value, one.key,
-                                                      text_of(one.unit, "-"), code.description().name, limits_of(one))});
+    else if (auto wrong = value != nullptr ? limit_broken(code, one, *value) : std::nullopt)
+      result.problems.push_back({one.key, std::move(*wrong)});
     result.values.push_back(value != nullptr ? *value : one.value);
   }
   return result;

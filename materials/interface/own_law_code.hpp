@@ -1,6 +1,8 @@
 #pragma once
 // A law behind the C interface talus_law.h, and what is known of it before it has parameters.
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,7 +64,13 @@ OwnLawValues values_of(const OwnLawCode& code, const NamedNumbers& given);
 std::shared_ptr<const ConstitutiveLaw> own_law(std::shared_ptr<const OwnLawCode> code, std::vector<Real> parameters, Real density,
                                                bool serial);
 
-/// The parameters of a law with weaken(), its strength divided by a factor > 0.  Throws Error if the law refuses.
+/// What is wrong with the first of `values`, all parameters of the law, that is beyond its limits.
+std::optional<std::string> beyond_limits(const OwnLawCode& code, std::span<const Real> values);
+
+/// What a function of a library returns; `name` is that of the function.  Throws Error if it fails or returns nothing.
+const talus_law& described_law(const talus_law* (*describe)(), const std::string& name);
+
+/// The parameters of a law with weaken(), its strength divided by a factor > 0.  Throws Error if the law refuses or leaves the limits.
 std::vector<Real> weakened_values(const OwnLawCode& code, std::vector<Real> values, Real factor);
 
 /// A call of a law of the user that has not returned.

@@ -20,13 +20,15 @@ using MessageText = std::array<char, 512>;
 
 thread_local LawCall call_of_thread;
 
-/// Calls a function of the user, one thread at a time if it is `serial`.  Anything that it throws becomes a message and the result -1.
+constexpr int has_thrown = std::numeric_limits<int>::min();
+
+/// Calls a function of the user, one thread at a time if it is `serial`.  Anything that it throws becomes a message and the result has_thrown.
 template <class F>
 int call_safely(const F& function, bool serial, const LawCall& call, MessageText& message) noexcept
 {
   static std::mutex one_at_a_time;
   message.front() = '\0';
-  int result = -1;
+  int result = has_thrown;
   const auto say = [&](std::string_view words) { *fmt::format_to_n(message.data(), message.size() - 1, "{}", words).out = '\0'; };
   std::unique_lock guard(one_at_a_time, std::defer_lock);
   if (serial)
@@ -44,13 +46,15 @@ int call_safely(const F& function, bool serial, const LawCall& call, MessageText
   return result;
 }
 
-/// What particles without an answer have said, of the last hundred at most.
+/// What particles without an answer have said at the last time at which there were any: the hundred with the lowest ids at most.
 class Complaints {
  public:
-  void add(std::int64_t id, std::string message)
+  void add(Real time, std::int64_t id, std::string message)
   {
     constexpr std::size_t most = 100;
     const std::lock_guard guard(mutex_);
+    if (time != std::exchange(time_, time))
+      all_.clear();
     all_.insert_or_assign(id, std::move(message));
     if (all_.size() > most)
       all_.erase(std::prev(all_.end()));
@@ -66,6 +70,7 @@ class Complaints {
 
  private:
   std::mutex mutex_;
+  Real time_ = 0;
   std::map<std::int64_t, std::string> all_;
 };
 
@@ -169,13 +174,13 @@ void OwnLaw::call(talus_law_block& block, OwnLawBlock& arrays) const noexcept
   const int result = call_safely([&] { return law_.update(&block); }, serial_, now, message);
   if (result == 0)
     return;
-  const bool known = 0 <= block.failed && block.failed < block.n;
+  const bool known = result != has_thrown && 0 <= block.failed && block.failed < block.n;
   const auto failed = static_cast<std::size_t>(known ? block.failed : 0);
   for (std::size_t i = known ? failed : 0; i < (known ? failed + 1 : n); ++i)
     arrays.stress().component(0)[i] = std::numeric_limits<Real>::quiet_NaN();
   std::string words = message.front() != '\0' ? std::string(message.data()) : fmt::format("update() returned {}", result);
   for (std::size_t i = known ? failed : 0; i < (known ? failed + 1 : n); ++i)
-    complaints_.add(arrays.id()[i], words);
+    complaints_.add(block.time, arrays.id()[i], words);
 }
 
 Mat3 OwnLaw::update(const Increment& step, Real* history) const noexcept
@@ -236,8 +241,16 @@ StressSums OwnLaw::update_strip(const Material& material, const StressStrip<D>& 
   for (detail::StressPack<D>& particles : packs) {
     const std::size_t i = particles.i;
     const SimdReal modulus = arrays.bulk().load(i) + (4.0 / 3) * arrays.shear().load(i);
+    const auto bounds_step = modulus > 0 && isfinite(modulus);
+    if (!all_of(bounds_step))
+      for (int lane = 0; lane < particles.count; ++lane)
+        if (!bounds_step[lane])
+          complaints_.add(
+              strip.time, strip.id[i + static_cast<std::size_t>(lane)],
+              fmt::format("it gave the modulus of uniaxial strain {:.6g} Pa (bulk + 4/3 shear), from which no time step follows",
+                          modulus[lane]));
     Sym3Of<SimdReal> stress = arrays.stress().load(i);
-    stress[0] = where(particles.good, stress[0], std::numeric_limits<Real>::quiet_NaN());
+    stress[0] = where(particles.good && bounds_step, stress[0], std::numeric_limits<Real>::quiet_NaN());
     particles.take(unpack(stress), material, strip, diffusivity(), sqrt(SimdReal(modulus * particles.F.determinant() / density_)), lanes);
   }
   return lanes.total();
@@ -247,14 +260,16 @@ bool OwnLaw::prestress(const Mat3& stress, Real* history) const noexcept
 {
   if (!description().starts_from_stress)
     return false;
-  initial_history(history);
   if (law_.prestress == nullptr)
     return true;
   const Sym3 packed = pack(stress);
+  std::vector<Real> own(history, history + description().history_width);  // a law that refuses changes nothing
   MessageText message;
   const int result =
-      call_safely([&] { return law_.prestress(law_.context, parameters_.data(), constants_.data(), packed.data(), history); }, serial_,
+      call_safely([&] { return law_.prestress(law_.context, parameters_.data(), constants_.data(), packed.data(), own.data()); }, serial_,
                   {name().data()}, message);
+  if (result == 0)
+    std::ranges::copy(own, history);
   return result == 0;
 }
 
@@ -273,6 +288,8 @@ std::vector<Real> weakened_values(const OwnLawCode& code, std::vector<Real> valu
   if (result != 0)
     throw Error(fmt::format("the law {} cannot divide its strength by {:.6g}{}{}", code.description().name, factor,
                             message.front() != '\0' ? ": " : "", message.data()));
+  if (const auto wrong = beyond_limits(code, values))
+    throw Error(fmt::format("the law {} divides its strength by {:.6g}: {}", code.description().name, factor, *wrong));
   return values;
 }
 
@@ -280,6 +297,18 @@ std::shared_ptr<const ConstitutiveLaw> own_law(std::shared_ptr<const OwnLawCode>
                                                bool serial)
 {
   return std::make_shared<const OwnLaw>(std::move(code), std::move(parameters), density, serial);
+}
+
+const talus_law& described_law(const talus_law* (*describe)(), const std::string& name)
+{
+  const talus_law* law = nullptr;
+  MessageText message;
+  const int result = call_safely([&] { return law = describe(), 0; }, true, {name.c_str()}, message);
+  if (result != 0)
+    throw Error(fmt::format("{} failed: {}", name, message.data()));
+  if (law == nullptr)
+    throw Error(fmt::format("{} returned no law", name));
+  return *law;
 }
 
 const LawCall& law_call_of_thread() noexcept { return call_of_thread; }

@@ -124,7 +124,7 @@ struct StressPack {
   }
 
  private:
-  void report(const StressStrip<D>& strip, int lane, Trouble trouble) const noexcept
+  [[gnu::always_inline]] void report(const StressStrip<D>& strip, int lane, Trouble trouble) const noexcept
   {
     strip.errors->report(strip.id[i + static_cast<std::size_t>(lane)], trouble);
   }

@@ -153,22 +153,24 @@ int update_umat(talus_law_block* block)
   const Umat& umat = *static_cast<const Umat*>(block->context);
   static thread_local UmatCall call;
   call.statev.resize(umat.start.size());
-  int result = 0;
+  int failed = -1;
   for (int p = 0; p < block->n; ++p) {
     read_particle(*block, p, call);
-    block->failed = p;  // stays if it throws
     call.run(umat);
     write_particle(call, *block, p);
     if (!(call.pnewdt < 1))
       continue;
     at(*block, block->stress, 0, p) = std::numeric_limits<double>::quiet_NaN();
-    result = refuse(block->message, block->message_size,
-                    fmt::format("it asks for a shorter time step, PNEWDT = {:.3g}, which Talus does not repeat: take a smaller time.cfl "
-                                "or time.max_step",
-                                call.pnewdt));
+    if (failed >= 0)
+      continue;
+    failed = p;
+    refuse(block->message, block->message_size,
+           fmt::format("it asks for a shorter time step, PNEWDT = {:.3g}, which Talus does not repeat: take a smaller time.cfl or "
+                       "time.max_step",
+                       call.pnewdt));
   }
-  block->failed = -1;
-  return result;
+  block->failed = failed;
+  return failed < 0 ? 0 : 1;
 }
 
 void add_variable(Umat& umat, std::string key, const char* unit, const char* meaning, int components)

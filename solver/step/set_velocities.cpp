@@ -1,5 +1,9 @@
 #include "solver/step/set_velocities.hpp"
 
+#include <algorithm>
+
+#include "solver/stable_step.hpp"
+
 namespace talus {
 
 template <int D>
@@ -14,6 +18,8 @@ void set_velocities(Model<D>& m, std::span<const Real> values, VelocityChange ch
     momentum.add(ForceAndMoment<D>::at(particles.x[row], particles.mass[row] * (v - particles.v[row])));
     particles.v.set(row, v);
   }
+  // The next step is bounded by the new speeds as well.
+  m.state.crossing = std::min(m.state.crossing, shortest_crossing(m.problem.mesh, m.state.materials, particles));
   const Real gain = totals(m).kinetic - kinetic_before;
   EnergyLedger& energy = m.state.energy;
   if (change == VelocityChange::at_start) {
