@@ -55,9 +55,10 @@ const VtkNumber* number_kind_of(std::string_view type)
 class HeaderReader {
  public:
   HeaderReader(std::string_view bytes, bool is_long) : bytes_(bytes), is_long_(is_long) {}
+  static std::size_t size_of_number(bool is_long) noexcept { return is_long ? 8 : 4; }
   std::uint64_t next()
   {
-    const std::size_t size = is_long_ ? 8 : 4;
+    const std::size_t size = size_of_number(is_long_);
     if (bytes_.size() < size)
       refuse_array("it ends before its numbers");
     std::uint64_t value = 0;
@@ -72,11 +73,22 @@ class HeaderReader {
   bool is_long_;
 };
 
+/// The uncompressed bytes of `count` blocks, of which the last is shorter unless `last` is 0; nothing if they are more than `most`.
+/// Numbers of damaged headers are of any size, so nothing is multiplied that could overflow.
+std::optional<std::uint64_t> bytes_of_blocks(std::uint64_t count, std::uint64_t size, std::uint64_t last, std::uint64_t most)
+{
+  if (count == 0)
+    return 0;
+  const std::uint64_t whole = last == 0 ? count : count - 1;
+  if (size == 0 || last > size || last > most || whole > (most - last) / size)
+    return std::nullopt;
+  return whole * size + last;
+}
+
 std::string unpacked_blocks(HeaderReader header, const std::string& compressor, std::size_t wanted)
 {
   const std::uint64_t count = header.next(), size = header.next(), last = header.next();
-  const std::uint64_t expected = count == 0 ? 0 : last == 0 ? count * size : (count - 1) * size + last;
-  if (count > header.rest().size() || (count > 0 && size > wanted + last) || last > size || expected != wanted)
+  if (count > header.rest().size() || bytes_of_blocks(count, size, last, wanted) != wanted)
     refuse_array(fmt::format("it has {} blocks of {} bytes, and its numbers are {} bytes", count, size, wanted));
   if (wanted / most_per_packed_byte > header.rest().size())
     refuse_array("it has more bytes than its blocks can hold");
@@ -90,7 +102,7 @@ std::string unpacked_blocks(HeaderReader header, const std::string& compressor, 
     BlockUnpacker unpack(compressor);
     for (std::uint64_t b = 0; b < count; ++b) {
       const std::size_t bytes = b + 1 == count && last != 0 ? last : size;
-      if (packed[b] > rest.size())
+      if (packed[b] > rest.size() || bytes > all.size() - at)
         refuse_array("it ends before its numbers");
       if (!unpack(rest.substr(0, packed[b]), std::as_writable_bytes(std::span(all.data() + at, bytes))))
         refuse_array(fmt::format("block {} cannot be unpacked", b + 1));
@@ -133,41 +145,88 @@ std::vector<Real> numbers_of_text(std::string_view text, std::size_t count)
   return numbers;
 }
 
-std::string decoded_base64(std::string_view text)
+std::string decoded_base64(std::string_view text, std::size_t most)
 {
   static constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static constexpr std::uint8_t no_letter = 255;
+  static constexpr auto values = [] {
+    std::array<std::uint8_t, 256> all{};
+    all.fill(no_letter);
+    for (std::uint8_t k = 0; k < letters.size(); ++k)
+      all[static_cast<unsigned char>(letters[k])] = k;
+    all[static_cast<unsigned char>('=')] = 0;
+    return all;
+  }();
   std::string bytes;
+  bytes.reserve(std::min(most, text.size() / 4 * 3) + 3);
   std::uint32_t bits = 0;
   int held = 0, padding = 0;
   for (const char c : text) {
-    if (array_blanks.find(c) != array_blanks.npos)
-      continue;
-    const std::size_t value = c == '=' ? 0 : letters.find(c);
-    if (value == letters.npos)
+    if (bytes.size() >= most)
       break;
+    const std::uint8_t value = values[static_cast<unsigned char>(c)];
+    if (value == no_letter) {
+      if (array_blanks.find(c) != array_blanks.npos)
+        continue;
+      break;
+    }
     padding += c == '=' ? 1 : 0;
-    bits = bits << 6U | static_cast<std::uint32_t>(value);
+    bits = bits << 6U | value;
     if (++held < 4)
       continue;
     for (int k = 0; k < 3 - padding; ++k)
       bytes += static_cast<char>(bits >> static_cast<unsigned>(16 - 8 * k) & 0xFFU);
     bits = 0, held = 0, padding = 0;
   }
+  if (bytes.size() > most)
+    bytes.resize(most);
   return bytes;
 }
 
-std::size_t vtk_count_of(std::string_view bytes, const VtkEncoding& encoding, std::string_view type)
+std::string array_in_base64(std::string_view text, const VtkEncoding& encoding)
+{
+  const std::size_t number = HeaderReader::size_of_number(encoding.long_headers);
+  const std::size_t first = encoding.compressor.empty() ? number : 3 * number;
+  const std::string begin = decoded_base64(text, first);
+  const std::uint64_t count = HeaderReader(begin, encoding.long_headers).next();  // of bytes, or of blocks
+  if (count > text.size())
+    refuse_array("it ends before its numbers");
+  if (encoding.compressor.empty())
+    return decoded_base64(text, number + count);
+  const std::string sizes = decoded_base64(text, first + count * number);
+  if (sizes.size() < first + count * number)
+    refuse_array("it ends before its numbers");
+  HeaderReader header(std::string_view(sizes).substr(first), encoding.long_headers);
+  std::size_t all = sizes.size();
+  for (std::uint64_t b = 0; b < count; ++b) {
+    const std::uint64_t packed = header.next();
+    if (packed > text.size() || all > text.size())
+      refuse_array("it ends before its numbers");
+    all += packed;
+  }
+  return decoded_base64(text, all);
+}
+
+std::size_t vtk_count_in_base64(std::string_view text, const VtkEncoding& encoding, std::string_view type)
+{
+  return vtk_count_of(decoded_base64(text, 3 * sizeof(std::uint64_t)), text.size(), encoding, type);
+}
+
+std::size_t vtk_count_of(std::string_view bytes, std::size_t held, const VtkEncoding& encoding, std::string_view type)
 {
   HeaderReader header(bytes, encoding.long_headers);
   const std::size_t size = vtk_size_of(type).value_or(1);
-  if (encoding.compressor.empty())
-    return header.next() / size;
+  if (encoding.compressor.empty()) {
+    const std::uint64_t all = header.next();
+    if (all > held)
+      refuse_array("it ends before its numbers");
+    return all / size;
+  }
   const std::uint64_t count = header.next(), block = header.next(), last = header.next();
-  if (count == 0)
-    return 0;
-  if (count > bytes.size() || block > bytes.size() * most_per_packed_byte || last > block)
+  const auto all = bytes_of_blocks(count, block, last, held * most_per_packed_byte);
+  if (!all)
     refuse_array("it has more bytes than its blocks can hold");
-  return (last == 0 ? count * block : (count - 1) * block + last) / size;
+  return *all / size;
 }
 
 std::vector<Real> numbers_of_bytes(std::string_view bytes, const VtkEncoding& encoding, std::string_view type, std::size_t count)

@@ -36,6 +36,14 @@ std::size_t count_attribute(const XmlTag& tag, std::string_view name)
   return value;
 }
 
+/// The tags around arrays.  Others occur inside of arrays too, such as <Value> of ranges in an <InformationKey>.
+bool is_section(std::string_view tag)
+{
+  static constexpr std::array<std::string_view, 8> sections{"PointData", "CellData", "Points", "Cells",
+                                                            "Verts",     "Lines",    "Strips", "Polys"};
+  return std::ranges::find(sections, tag) != sections.end();
+}
+
 /// Reads one file from beginning to end.
 class VtkPointReader {
  public:
@@ -51,6 +59,8 @@ class VtkPointReader {
     appended_ = bytes.substr(begin + 1);
     const std::string_view tag = bytes.substr(data, tag_end - data);
     appended_raw_ = tag.find("\"raw\"") != tag.npos;
+    if (!appended_raw_)
+      appended_ = appended_.substr(0, appended_.find('<'));
   }
 
   VtkPoints read()
@@ -73,7 +83,7 @@ class VtkPointReader {
         array(*tag, section, tag->kind == XmlTag::Kind::opens ? tags.text() : std::string());
       else if (tag->name == "InformationKey" && last_ != nullptr && attribute_of(*tag, "name") == "UNITS_LABEL")
         last_->unit = tags.text();
-      else if (in_piece_ && tag->kind == XmlTag::Kind::opens && tag->name != "InformationKey")
+      else if (in_piece_ && tag->kind == XmlTag::Kind::opens && is_section(tag->name))
         section = tag->name;
     }
     if (pieces_ == 0)
@@ -122,9 +132,9 @@ class VtkPointReader {
     constexpr std::size_t most_field_components = 1000;
     if (components < 1 || components > most_field_components)
       refuse_file(fmt::format("array \"{}\" has {} components", name.substr(0, 40), components));
-    const std::size_t items = by_point ? n_points_ : name == "connectivity" ? n_corners(tag, type, inline_text) : n_cells_;
     std::vector<Real> numbers;
     try {
+      const std::size_t items = by_point ? n_points_ : shapes && name == "connectivity" ? n_corners(tag, type, inline_text) : n_cells_;
       numbers = numbers_of(tag, type, inline_text, items * components);
     } catch (const EnvironmentError& wrong) {
       refuse_file(fmt::format("array \"{}\": {}", name.substr(0, 40), wrong.what()));
@@ -153,37 +163,45 @@ class VtkPointReader {
       }
       return words;
     }
-    return vtk_count_of(bytes_of(tag, inline_text), encoding_, type);
+    const auto [bytes, is_base64] = source_of(tag, inline_text);
+    return is_base64 ? vtk_count_in_base64(bytes, encoding_, type) : vtk_count_of(bytes, bytes.size(), encoding_, type);
   }
 
-  std::string bytes_of(const XmlTag& tag, const std::string& inline_text) const
+  /// Where an array begins that is not written as numbers: its bytes or base64, and behind it that of others.
+  struct ArraySource {
+    std::string_view bytes;
+    bool is_base64;
+  };
+  ArraySource source_of(const XmlTag& tag, const std::string& inline_text) const
   {
     const std::string format = attribute_of(tag, "format");
     if (format == "binary")
-      return decoded_base64(inline_text);
+      return {inline_text, true};
     if (format != "appended")
       refuse_file(fmt::format("its format is \"{}\": \"ascii\", \"binary\" and \"appended\" can be read", format.substr(0, 40)));
     const std::size_t offset = count_attribute(tag, "offset");
     if (offset >= appended_.size())
       refuse_file("its numbers are not in the file");
-    const std::string_view rest = appended_.substr(offset);
-    return appended_raw_ ? std::string(rest) : decoded_base64(rest.substr(0, rest.find('<')));
+    return {appended_.substr(offset), !appended_raw_};
   }
 
   std::vector<Real> numbers_of(const XmlTag& tag, const std::string& type, const std::string& inline_text, std::size_t count) const
   {
     if (attribute_of(tag, "format") == "ascii")
       return numbers_of_text(inline_text, count);
-    return numbers_of_bytes(bytes_of(tag, inline_text), encoding_, type, count);
+    const auto [bytes, is_base64] = source_of(tag, inline_text);
+    return is_base64 ? numbers_of_bytes(array_in_base64(bytes, encoding_), encoding_, type, count)
+                     : numbers_of_bytes(bytes, encoding_, type, count);
   }
 
   void add(std::vector<VtkField>& fields, const XmlTag& tag, const std::string& name, int components, std::vector<Real> numbers)
   {
     const auto found = std::ranges::find(fields, name, &VtkField::name);
-    if (found == fields.end() && pieces_ > 0)
+    const bool is_new = found == fields.end();
+    if (is_new && pieces_ > 0)
       refuse_file(fmt::format("piece {} has a field \"{}\", and others have not", pieces_ + 1, name.substr(0, 40)));
-    VtkField& field = found == fields.end() ? fields.emplace_back() : *found;
-    if (found != fields.end() && field.components != components)
+    VtkField& field = is_new ? fields.emplace_back() : *found;
+    if (!is_new && field.components != components)
       refuse_file(
           fmt::format("field \"{}\" has {} components in one place and {} in another", name.substr(0, 40), field.components, components));
     field.name = name;
@@ -204,9 +222,10 @@ class VtkPointReader {
     all_.points.insert(all_.points.end(), places_.begin(), places_.end());
     std::size_t begin = 0;
     for (std::size_t c = 0; c < n_cells_; ++c) {
-      const auto end = static_cast<std::size_t>(std::max(offsets_[c], Real{0}));
-      if (end <= begin || end > connectivity_.size())
+      const Real offset = offsets_[c];  // of a damaged file: anything, also what no whole number can be
+      if (!(offset > static_cast<Real>(begin)) || !(offset <= static_cast<Real>(connectivity_.size())) || offset != std::floor(offset))
         refuse_file(fmt::format("cell {} has no corners", c + 1));
+      const auto end = static_cast<std::size_t>(offset);
       std::array<Real, 3> mean{};
       for (std::size_t k = begin; k < end; ++k) {
         if (!(connectivity_[k] >= 0) || !(connectivity_[k] < static_cast<Real>(n_points_)))
