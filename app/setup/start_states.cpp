@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
+#include "app/setup/checks/start_distances.hpp"
 #include "app/setup/flow_of_scene.hpp"
 #include "app/setup/laws_in_force.hpp"
 #include "core/parallel/threads.hpp"
 #include "io/points/start_points.hpp"
 #include "mesh/digest.hpp"
-#include "mesh/geometry/linear_fit.hpp"
 
 namespace talus {
 
@@ -24,27 +26,37 @@ struct StressTaken {
   bool has_pore = false;    ///< the particle carries pore pressure
 };
 
+/// How many particles something is said of, and the least number of one.
+struct PlacesFound {
+  std::int64_t count = 0, first = std::numeric_limits<std::int64_t>::max();
+  PlacesFound& operator+=(const PlacesFound& other) noexcept
+  {
+    count += other.count, first = std::min(first, other.first);
+    return *this;
+  }
+};
+
 /// What is found over all particles of a body.
 struct Extremes {
   Real largest = 0, change = 0, pore_apart = 0, pore_largest = 0;
   std::int64_t outside = 0, pulled = 0;
+  PlacesFound unknown{}, refused{};  ///< through whose points no plane fits; whose stress the law does not take
   Extremes& operator+=(const Extremes& other) noexcept
   {
     largest = std::max(largest, other.largest), change = std::max(change, other.change);
     pore_apart = std::max(pore_apart, other.pore_apart);
     pore_largest = std::max(pore_largest, other.pore_largest);
     outside += other.outside, pulled += other.pulled;
+    unknown += other.unknown, refused += other.refused;
     return *this;
   }
 };
 
-std::vector<std::string> scalars_of(const ConstitutiveLaw& law)
+std::vector<HistoryVariable> scalars_of(const ConstitutiveLaw& law)
 {
-  std::vector<std::string> keys;
-  for (const HistoryVariable& variable : law.variables())
-    if (variable.components == 1)
-      keys.emplace_back(variable.key);
-  return keys;
+  std::vector<HistoryVariable> scalars;
+  std::ranges::copy_if(law.variables(), std::back_inserter(scalars), [](const HistoryVariable& one) { return one.components == 1; });
+  return scalars;
 }
 
 std::uint64_t digest_of(const StartPoints& points)
@@ -91,16 +103,12 @@ class StartOfBody {
     if (!read() || !decide())
       return;
     const PointCloud<D> cloud(places());
-    const std::vector<Real> limits = limits_of(cloud);
-    if (limits.empty())
-      return;
-    std::vector<LinearFit<D>> fits(static_cast<std::size_t>(body_.size()));
-    parallel_for(body_.size(), [&](Index i) { fits[static_cast<std::size_t>(i)] = *cloud.fit(particles_.x[row(i)]); });
-    const std::optional<Real> farthest = check_distances(fits, limits);
+    const std::optional<Real> farthest = distance_from_points(cloud, spec_, file_.string(), body_, particles_, ranks_, errors_);
     if (!farthest)
       return;
-    take(fits);
-    report(*farthest);
+    take_all(cloud);
+    if (taken_by_all())
+      report(*farthest);
   }
 
  private:
@@ -153,74 +161,48 @@ class StartOfBody {
     return all;
   }
 
-  /// How far from each point particles may be; nothing if the points do not span the plane or space.
-  std::vector<Real> limits_of(const PointCloud<D>& cloud)
-  {
-    std::vector<Real> limits(static_cast<std::size_t>(cloud.size()), start_.reach.value_or(0));
-    const bool spans = cloud.fit(cloud[0]).has_value();
-    if (!spans) {
-      errors_.add(start_.where, "table",
-                  fmt::format("all {} points of {} lie on one {}: values beside it are not known", cloud.size(), file_.string(),
-                              D == 2 ? "line" : "plane"));
-      return {};
-    }
-    if (!start_.reach)
-      parallel_for(cloud.size(), [&](Index i) { limits[static_cast<std::size_t>(i)] = cloud.fit(cloud[i])->radius; });
-    return limits;
-  }
-
-  /// The distance of the particle that is farthest from its nearest point; nothing, and an error, if some are too far.
-  std::optional<Real> check_distances(const std::vector<LinearFit<D>>& fits, const std::vector<Real>& limits)
-  {
-    std::int64_t beyond = 0, worst_id = std::numeric_limits<std::int64_t>::max();
-    Real farthest = 0, worst = 0;
-    for (const LinearFit<D>& fit : fits) {
-      farthest = std::max(farthest, fit.distance);
-      if (fit.distance > limits[static_cast<std::size_t>(fit.nearest)])
-        ++beyond, worst = std::max(worst, fit.distance);
-    }
-    farthest = ranks_.max(farthest);
-    if (beyond = ranks_.sum(beyond); beyond == 0)
-      return farthest;
-    worst = ranks_.max(worst);
-    std::string text;
-    for (Index i = 0; i < body_.size(); ++i)
-      if (const LinearFit<D>& fit = fits[static_cast<std::size_t>(i)]; fit.distance == worst && particles_.id[row(i)] < worst_id) {
-        const Real limit = limits[static_cast<std::size_t>(fit.nearest)];
-        const Vec<D> x = particles_.x[row(i)];
-        worst_id = particles_.id[row(i)];
-        text = fmt::format("the worst at ({:.6g}), {:.4g} m from its nearest point, allowed {:.4g} m", fmt::join(x.begin(), x.end(), ", "),
-                           worst, limit);
-      }
-    const std::int64_t first = ranks_.min(worst_id), count = ranks_.sum(std::int64_t{body_.size()});
-    text = ranks_.first(worst_id == first ? text : std::string());
-    errors_.add(
-        start_.where, "table",
-        fmt::format("{} of the {} particles of body \"{}\" lie beyond the points of {}, {}; extend the table, or allow more (reach)",
-                    beyond, count, spec_.name, file_.string(), text));
-    return std::nullopt;
-  }
-
-  void take(const std::vector<LinearFit<D>>& fits)
+  void take_all(const PointCloud<D>& cloud)
   {
     if (taken_.has_pore && particles_.pore.empty())
       particles_.pore.assign(particles_.id.size(), 0);
     if (start_.displacement == Carried::keep && particles_.x0.empty())
       particles_.x0 = particles_.x;
-    for (const auto& [key, values] : points_.history)
-      for (const HistoryVariable& variable : material_.law().variables())
-        if (variable.key == key)
-          parallel_for(body_.size(), [&](Index i) {
-            history_value(material_, variable, i) =
-                fits[static_cast<std::size_t>(i)].at([&](Index k) { return values[static_cast<std::size_t>(k)]; });
-          });
-    found_ = parallel_sum<Extremes>(body_.size(), [&](Index i) { return take(i, fits[static_cast<std::size_t>(i)]); });
+    // A fit has some hundred bytes: each is used at once, and none is kept.
+    found_ = parallel_sum<Extremes>(body_.size(), [&](Index i) {
+      const auto fit = cloud.fit(particles_.x[row(i)]);
+      if (fit)
+        return take(i, *fit);
+      Extremes nothing;
+      nothing.unknown = {1, particles_.id[row(i)]};
+      return nothing;
+    });
     found_.largest = ranks_.max(found_.largest), found_.change = ranks_.max(found_.change);
     found_.pore_apart = ranks_.max(found_.pore_apart), found_.pore_largest = ranks_.max(found_.pore_largest);
+    for (PlacesFound* const found : {&found_.unknown, &found_.refused})
+      *found = {ranks_.sum(found->count), ranks_.min(found->first)};
     const Real least = 1e-6 * found_.largest;  // of the largest stress: rounding in files of single precision
     if (material_.law().description().has_strength)
       found_.outside = parallel_sum<std::int64_t>(body_.size(), [&](Index i) { return std::int64_t{yields(i) > least ? 1 : 0}; });
     found_.outside = ranks_.sum(found_.outside), found_.pulled = ranks_.sum(found_.pulled);
+  }
+
+  /// Whether every particle has its values and its law takes them; an error if not.
+  bool taken_by_all()
+  {
+    const std::int64_t count = ranks_.sum(std::int64_t{body_.size()});
+    if (found_.unknown.count > 0)
+      errors_.add(start_.where, "table",
+                  fmt::format("{} of the {} particles of body \"{}\" lie so far beside the points of {} that these seem to lie on one {}, "
+                              "so that values there are not known; the first is at ({}): extend the table",
+                              found_.unknown.count, count, spec_.name, file_.string(), D == 2 ? "line" : "plane",
+                              place_of_particle(found_.unknown.first, body_, particles_, ranks_)));
+    if (found_.refused.count > 0)
+      errors_.add(spec_.where, "initial",
+                  fmt::format("law \"{}\" does not take the stress of the table at {} of the {} particles of body \"{}\", the first at "
+                              "({}): give a stress that it can have there",
+                              material_.law().name(), found_.refused.count, count, spec_.name,
+                              place_of_particle(found_.refused.first, body_, particles_, ranks_)));
+    return found_.unknown.count == 0 && found_.refused.count == 0;
   }
 
   Extremes take(Index i, const LinearFit<D>& fit)
@@ -237,7 +219,12 @@ class StartOfBody {
       stress = add_diagonal(stress, u);
     if (taken_.drops_pore)
       stress = add_diagonal(stress, -u);
-    material_.prestress(i, unpack(stress));
+    for (const auto& [key, values] : points_.history)
+      for (const HistoryVariable& variable : material_.law().variables())
+        if (variable.key == key)
+          history_value(material_, variable, i) = fit.at_within([&](Index k) { return values[static_cast<std::size_t>(k)]; });
+    if (!material_.prestress(i, unpack(stress)))
+      found.refused = {1, particles_.id[p]};
     found.largest = stress.norm();
     found.change = yields(i, stress);
     found.pulled = stress.head<3>().sum() > 0 ? 1 : 0;

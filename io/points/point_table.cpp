@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
 
@@ -160,12 +161,21 @@ void add_column(PointTable& table, std::string name, std::string unit, std::span
   }
 }
 
+/// The names of the columns that a field becomes.
+std::vector<std::string> column_names_of(const VtkField& field)
+{
+  std::vector<std::string> names = endings_of(field);
+  for (std::string& name : names)
+    name = name.empty() ? field.name : field.name + "_" + name;
+  return names;
+}
+
 bool has_stress(const std::vector<VtkField>& fields)
 {
-  return std::ranges::any_of(fields, [](const VtkField& field) {
-    const std::vector<std::string> endings = endings_of(field);
-    return std::ranges::any_of(endings, [&](const std::string& ending) { return meaning_of(field.name + "_" + ending).is_stress(); });
-  });
+  std::vector<std::string> names;
+  for (const VtkField& field : fields)
+    std::ranges::move(column_names_of(field), std::back_inserter(names));
+  return std::ranges::any_of(meanings_of(names), &ColumnMeaning::is_stress);
 }
 
 PointTable read_vtk_table(const fs::path& file, PointsOf data)
@@ -177,9 +187,9 @@ PointTable read_vtk_table(const fs::path& file, PointsOf data)
   for (std::size_t d = 0; d < 3; ++d)
     add_column(table, std::string(1, "xyz"[d]), "m", places, 3, d);
   for (const VtkField& field : cells ? from.of_cells : from.of_points) {
-    const std::vector<std::string> endings = endings_of(field);
-    for (std::size_t c = 0; c < endings.size(); ++c)
-      add_column(table, endings[c].empty() ? field.name : field.name + "_" + endings[c], field.unit, field.values, endings.size(), c);
+    const std::vector<std::string> names = column_names_of(field);
+    for (std::size_t c = 0; c < names.size(); ++c)
+      add_column(table, names[c], field.unit, field.values, names.size(), c);
   }
   return table;
 }

@@ -5,128 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 
-#include "io/points/column_names.hpp"
+#include "io/points/column_choice.hpp"
+#include "io/points/equal_points.hpp"
 #include "io/points/point_table.hpp"
-#include "mesh/geometry/linear_fit.hpp"
 
 namespace talus {
 
 namespace {
 
 constexpr std::size_t most_problems_of_points = 20;
-
-/// A column that is used, with the factor to SI.
-struct UsedColumn {
-  std::size_t column;
-  Real factor;
-};
-using Components = std::vector<UsedColumn>;
-
-Real factor_of(StressUnit unit) { return unit == StressUnit::Pa ? 1 : unit == StressUnit::kPa ? 1e3 : 1e6; }
-
-/// Columns by what they mean.
-class ColumnChoice {
- public:
-  ColumnChoice(const StartStateSpec& spec, const PointTable& table, std::vector<SceneError>& problems)
-      : spec_(spec), table_(table), problems_(problems)
-  {
-    for (std::size_t c = 0; c < table.columns.size(); ++c)
-      if (const ColumnMeaning meaning = meaning_of(table.columns[c].name); meaning.quantity != PointQuantity::other)
-        place(meaning, c);
-  }
-
-  /// The columns of these components of a quantity, if all of them are there.
-  std::optional<Components> find(PointQuantity quantity, std::span<const std::size_t> components)
-  {
-    Components found;
-    for (const std::size_t component : components) {
-      const auto& column = columns_[static_cast<std::size_t>(quantity)][component];
-      if (!column)
-        return std::nullopt;
-      found.push_back(use(*column, quantity));
-    }
-    return found;
-  }
-  bool any(PointQuantity quantity) const
-  {
-    return std::ranges::any_of(columns_[static_cast<std::size_t>(quantity)], [](const auto& column) { return column.has_value(); });
-  }
-  bool has(PointQuantity quantity, std::size_t component) const
-  {
-    return columns_[static_cast<std::size_t>(quantity)][component].has_value();
-  }
-
-  std::optional<std::size_t> named(const std::string& name) const
-  {
-    for (const bool exact : {true, false})
-      for (std::size_t c = 0; c < table_.columns.size(); ++c)
-        if (exact ? table_.columns[c].name == name : plain_name(table_.columns[c].name) == plain_name(name))
-          return c;
-    return std::nullopt;
-  }
-  /// A column in the unit in which it is.
-  UsedColumn use_as_is(std::size_t column)
-  {
-    used_.insert(column);
-    return {column, 1};
-  }
-  const std::set<std::size_t>& used() const noexcept { return used_; }
-  void complain(const std::string& what)
-  {
-    problems_.push_back({{table_.file.string(), table_.heading, table_.heading > 0 ? 1 : 0, ""}, what, ""});
-  }
-  std::string all_names() const
-  {
-    std::vector<std::string> names;
-    for (const PointColumn& column : table_.columns)
-      names.push_back(column.name);
-    return fmt::format("{}", fmt::join(names, ", "));
-  }
-
- private:
-  void place(const ColumnMeaning& meaning, std::size_t c)
-  {
-    auto& slot = columns_[static_cast<std::size_t>(meaning.quantity)][meaning.component];
-    if (slot && (plain_name(table_.columns[c].name).ends_with("yx") || plain_name(table_.columns[c].name).ends_with("zy") ||
-                 plain_name(table_.columns[c].name).ends_with("zx")))
-      return;  // the other half of a symmetric tensor
-    if (slot)
-      complain(fmt::format("the columns \"{}\" and \"{}\" have one meaning: leave one out of the table", table_.columns[*slot].name,
-                           table_.columns[c].name));
-    else
-      slot = c;
-  }
-
-  UsedColumn use(std::size_t column, PointQuantity quantity)
-  {
-    used_.insert(column);
-    const std::string& unit = table_.columns[column].unit;
-    const bool is_pressure =
-        quantity == PointQuantity::stress || quantity == PointQuantity::effective_stress || quantity == PointQuantity::pore_pressure;
-    Real factor = unit.empty() ? (is_pressure ? factor_of(spec_.unit) : 1) : factor_of_unit(unit, quantity);
-    if (factor == 0) {
-      complain(fmt::format("column \"{}\" has the unit \"{}\"; known are {}", table_.columns[column].name, unit,
-                           is_pressure                           ? "Pa, kPa, MPa, GPa, N/m^2, kN/m^2, MN/m^2 and N/mm^2"
-                           : quantity == PointQuantity::velocity ? "m/s, cm/s and mm/s"
-                                                                 : "m, km, cm and mm"));
-      factor = 1;
-    }
-    if ((quantity == PointQuantity::stress || quantity == PointQuantity::effective_stress) &&
-        spec_.sign == StressSign::compression_positive)
-      factor = -factor;
-    return {column, factor};
-  }
-
-  const StartStateSpec& spec_;
-  const PointTable& table_;
-  std::vector<SceneError>& problems_;
-  std::array<std::array<std::optional<std::size_t>, 6>, 7> columns_{};
-  std::set<std::size_t> used_;
-};
 
 /// The rows that the scene selects.
 std::vector<std::size_t> selected_rows(const StartStateSpec& spec, const PointTable& table, const ColumnChoice& choice,
@@ -160,75 +50,6 @@ std::vector<std::size_t> selected_rows(const StartStateSpec& spec, const PointTa
   return rows;
 }
 
-/// Everything that points of one place have to agree in.
-std::vector<Real> values_at(const StartPoints& points, std::size_t i)
-{
-  std::vector<Real> values(points.stress[i].begin(), points.stress[i].end());
-  if (!points.pore.empty())
-    values.push_back(points.pore[i]);
-  for (const auto* vectors : {&points.velocity, &points.displacement})
-    if (!vectors->empty())
-      values.insert(values.end(), (*vectors)[i].begin(), (*vectors)[i].end());
-  for (const auto& [key, column] : points.history)
-    values.push_back(column[i]);
-  return values;
-}
-
-void keep_points(const std::vector<bool>& keep, StartPoints& points)
-{
-  const auto thin = [&](auto& column) {
-    std::size_t to = 0;
-    for (std::size_t i = 0; i < column.size(); ++i)
-      if (keep[i])
-        column[to++] = column[i];
-    column.resize(to);
-  };
-  thin(points.x), thin(points.stress), thin(points.pore), thin(points.velocity), thin(points.displacement);
-  for (auto& [key, column] : points.history)
-    thin(column);
-}
-
-/// Drops points that are there already; complains of those with other values.
-template <int D>
-void merge_equal_points(const PointTable& table, const std::vector<std::size_t>& rows, StartPoints& points,
-                        std::vector<SceneError>& problems)
-{
-  constexpr Real same_place = 1e-9, same_value = 1e-6;  // of the extent; of the largest value there: single precision
-  constexpr Index most_at_a_place = 16;
-  std::vector<Vec<D>> places;
-  Vec<D> low = Vec<D>::Constant(std::numeric_limits<Real>::infinity()), high = -low;
-  for (const auto& x : points.x) {
-    places.push_back(Eigen::Map<const Vec<D>>(x.data()));
-    low = low.cwiseMin(places.back()), high = high.cwiseMax(places.back());
-  }
-  const Real tolerance = same_place * (high - low).norm();
-  const PointCloud<D> cloud(std::move(places));
-  std::vector<bool> keep(points.x.size(), true);
-  for (std::size_t i = 0; i < keep.size(); ++i)
-    for (const auto& [squared, other] : cloud.nearest(cloud[static_cast<Index>(i)], most_at_a_place)) {
-      const auto j = static_cast<std::size_t>(other);
-      if (j >= i || squared > tolerance * tolerance || !keep[j])
-        continue;
-      const std::vector<Real> a = values_at(points, i), b = values_at(points, j);
-      Real largest = 0, apart = 0;
-      for (std::size_t k = 0; k < a.size(); ++k)
-        largest = std::max({largest, std::abs(a[k]), std::abs(b[k])}), apart = std::max(apart, std::abs(a[k] - b[k]));
-      keep[i] = false;
-      if (apart > same_value * largest && problems.size() < most_problems_of_points)
-        problems.push_back(
-            {table.where(rows[i]),
-             fmt::format("{}it lies where {} does, ({:.6g}), and has other values: average them, give values of cells "
-                         "(data), or tell materials apart (select)",
-                         table.named(rows[i]),
-                         table.line.empty() ? fmt::format("point {}", rows[j]) : fmt::format("that of line {}", table.line[rows[j]]),
-                         fmt::join(points.x[i].begin(), points.x[i].begin() + D, ", ")),
-             ""});
-      break;
-    }
-  points.merged = static_cast<Index>(std::ranges::count(keep, false));
-  keep_points(keep, points);
-}
-
 /// Takes the columns out of the table.
 class PointReader {
  public:
@@ -236,12 +57,14 @@ class PointReader {
       : spec_(spec), table_(std::move(table)), dimension_(static_cast<std::size_t>(dimension)), choice_(spec, table_, problems_)
   {}
 
-  StartPoints read(std::span<const std::string> history)
+  StartPoints read(std::span<const HistoryVariable> history)
   {
     choose(history);
     rows_ = selected_rows(spec_, table_, choice_, problems_);
     if (problems_.empty())
       check_numbers();
+    if (problems_.empty())
+      check_symmetry();
     if (problems_.empty())
       fill();
     if (problems_.empty() && rows_.size() <= dimension_)
@@ -251,7 +74,7 @@ class PointReader {
                        rows_.size() == 1 ? "" : "s", spec_.select ? " selected" : "", dimension_ + 1, dimension_ == 2 ? "line" : "plane"),
            ""});
     if (problems_.empty())
-      dimension_ == 2 ? merge_equal_points<2>(table_, rows_, points_, problems_) : merge_equal_points<3>(table_, rows_, points_, problems_);
+      merge_equal_points(table_, rows_, static_cast<int>(dimension_), points_, problems_);
     if (!problems_.empty())
       throw SceneErrors(std::move(problems_));
     for (std::size_t c = 0; c < table_.columns.size(); ++c)
@@ -260,7 +83,7 @@ class PointReader {
   }
 
  private:
-  void choose(std::span<const std::string> history)
+  void choose(std::span<const HistoryVariable> history)
   {
     static constexpr std::array<std::size_t, 6> all{0, 1, 2, 3, 4, 5};
     const std::span<const std::size_t> tensor = std::span(all).first(dimension_ == 2 ? 4 : 6), vector = std::span(all).first(dimension_);
@@ -277,18 +100,18 @@ class PointReader {
       missing(wanted, tensor,
               [&](std::size_t c) { return fmt::format("{}stress_{}", named_effective ? "effective_" : "", stress_endings[c]); });
     static constexpr std::array<std::size_t, 1> scalar{0};
-    pore_ = choice_.find(PointQuantity::pore_pressure, scalar).value_or(Components{});
+    pore_ = choice_.find(PointQuantity::pore_pressure, scalar).value_or(UsedColumns{});
     if (spec_.velocity == Carried::keep)
-      velocity_ = choice_.find(PointQuantity::velocity, vector).value_or(Components{});
+      velocity_ = choice_.find(PointQuantity::velocity, vector).value_or(UsedColumns{});
     if (spec_.displacement == Carried::keep) {
-      displacement_ = choice_.find(PointQuantity::displacement, vector).value_or(Components{});
+      displacement_ = choice_.find(PointQuantity::displacement, vector).value_or(UsedColumns{});
       if (displacement_.empty())
         choice_.complain(fmt::format("it has no columns of the displacement, which goes on from there (displacement: keep); it has {}",
                                      choice_.all_names()));
     }
-    for (const std::string& key : history)
-      if (const auto column = choice_.named(key); column && meaning_of(table_.columns[*column].name).quantity == PointQuantity::other)
-        history_.emplace_back(key, choice_.use_as_is(*column));
+    for (const HistoryVariable& variable : history)
+      if (const auto column = choice_.named(std::string(variable.key)); column && choice_.meaning(*column).quantity == PointQuantity::other)
+        history_.emplace_back(variable.key, choice_.use_as(*column, variable.unit));
   }
 
   template <class NameOf>
@@ -316,8 +139,30 @@ class PointReader {
                                ""});
   }
 
+  /// A tensor with nine numbers has each shear stress twice.
+  void check_symmetry()
+  {
+    constexpr Real rounding = 1e-6;  // of the largest stress: single precision
+    Real largest = 0;
+    for (const std::size_t row : rows_)
+      for (const UsedColumn& used : stress_)
+        largest = std::max(largest, std::abs(value(used, row)));
+    for (const auto& [one, other] : choice_.halves()) {
+      const auto apart = [&](std::size_t row) { return std::abs(value(one, row) - value(other, row)) > rounding * largest; };
+      const auto first = std::ranges::find_if(rows_, apart);
+      if (first == rows_.end())
+        continue;
+      const PointColumn &a = table_.columns[one.column], &b = table_.columns[other.column];
+      problems_.push_back(
+          {table_.where(*first),
+           fmt::format("{}{} is {:.6g} and {} is {:.6g}, in all at {} of {} points: a tensor of stress is symmetric", table_.named(*first),
+                       a.name, a.values[*first], b.name, b.values[*first], std::ranges::count_if(rows_, apart), rows_.size()),
+           ""});
+    }
+  }
+
   Real value(const UsedColumn& used, std::size_t row) const { return used.factor * table_.columns[used.column].values[row]; }
-  void fill_vectors(const Components& from, std::vector<std::array<Real, 3>>& to) const
+  void fill_vectors(const UsedColumns& from, std::vector<std::array<Real, 3>>& to) const
   {
     for (std::size_t i = 0; i < rows_.size() && !from.empty(); ++i) {
       std::array<Real, 3> vector{};
@@ -352,7 +197,7 @@ class PointReader {
   std::vector<SceneError> problems_;
   ColumnChoice choice_;
   std::vector<std::size_t> rows_;
-  Components position_, stress_, pore_, velocity_, displacement_;
+  UsedColumns position_, stress_, pore_, velocity_, displacement_;
   std::vector<std::pair<std::string, UsedColumn>> history_;
   StartPoints points_;
 };
@@ -360,7 +205,7 @@ class PointReader {
 }  // namespace
 
 StartPoints read_start_points(const StartStateSpec& spec, const std::filesystem::path& file, int dimension,
-                              std::span<const std::string> history)
+                              std::span<const HistoryVariable> history)
 {
   return PointReader(spec, read_point_table(file, spec.data), dimension).read(history);
 }

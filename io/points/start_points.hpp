@@ -9,6 +9,7 @@
 
 #include "core/types.hpp"
 #include "io/scene/scene_start_state.hpp"
+#include "materials/interface/history_rows.hpp"
 
 namespace talus {
 
@@ -25,9 +26,10 @@ struct StartPoints {
 };
 
 /// Reads the table of a body whose law has the scalar history variables `history`.  In 2 dimensions z is not needed, and of the shear stress
-/// only xy.  Throws SceneErrors with file and line: columns that are missing or there twice, entries that are no finite numbers, units that are
-/// not known, points at one place with different values, fewer points than a plane needs; EnvironmentError if the file cannot be read.
+/// only xy.  Throws SceneErrors with file and line: columns that are missing or there twice, entries that are no finite numbers, units that
+/// are not known, points at one place with different values, tensors that are not symmetric, fewer points than a plane needs;
+/// EnvironmentError if the file cannot be read.
 StartPoints read_start_points(const StartStateSpec& spec, const std::filesystem::path& file, int dimension,
-                              std::span<const std::string> history);
+                              std::span<const HistoryVariable> history);
 
 }  // namespace talus

@@ -1,5 +1,6 @@
 #pragma once
 // Interpolation between scattered points that is exact for linear functions, also beside the points: moving least squares of first order.
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
@@ -27,6 +28,16 @@ struct LinearFit {
     for (std::size_t i = 1; i < point.size(); ++i)
       sum += value[i] * f(point[i]);
     return sum;
+  }
+  /// The same of numbers, but between the least and the largest of these points: a plane goes on beyond the last of them, where what cannot
+  /// be negative would become so.
+  template <class F>
+  Real at_within(F&& f) const
+  {
+    Real low = f(point.front()), high = low;
+    for (const Index i : point)
+      low = std::min<Real>(low, f(i)), high = std::max<Real>(high, f(i));
+    return std::clamp<Real>(at(f), low, high);
   }
 };
 

@@ -1,6 +1,7 @@
 // Tables of points: what names, units and signs mean, and what is refused with its line.
 #include "io/points/start_points.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "core/error.hpp"
@@ -19,15 +20,16 @@ const std::string plain = "x,y,stress_xx,stress_yy,stress_zz,stress_xy\n0,0,-1,-
 class Points : public testing::Test {
  protected:
   StartPoints read(const std::string& text, const StartStateSpec& spec = {}, int dimension = 2,
-                   const std::vector<std::string>& history = {}) const
+                   const std::vector<HistoryVariable>& history = {}) const
   {
     write_whole(folder_ / "state.csv", text);
     return read_start_points(spec, folder_ / "state.csv", dimension, history);
   }
-  std::string refusal(const std::string& text, const StartStateSpec& spec = {}, int dimension = 2) const
+  std::string refusal(const std::string& text, const StartStateSpec& spec = {}, int dimension = 2,
+                      const std::vector<HistoryVariable>& history = {}) const
   {
     try {
-      read(text, spec, dimension);
+      read(text, spec, dimension, history);
     } catch (const SceneErrors& wrong) {
       std::string all;
       for (const SceneError& problem : wrong.problems())
@@ -82,12 +84,69 @@ TEST_F(Points, KnowsTheNamesOfOtherPrograms)
     is(name, PointQuantity::other, 0);
 }
 
+TEST_F(Points, TheNumbersOfComponentsCountAsTheirProgramDoes)
+{
+  const auto components = [](const std::vector<std::string>& names) {
+    std::vector<int> all;
+    for (const ColumnMeaning& meaning : meanings_of(names))
+      all.push_back(meaning.quantity == PointQuantity::other ? -1 : static_cast<int>(meaning.component));
+    return all;
+  };
+  for (const std::string base : {"velocity", "displacement", "Points", "coordinates"})
+    for (const std::string separator : {"_", ":"})
+      EXPECT_THAT(components({base + separator + "0", base + separator + "1", base + separator + "2"}), ElementsAre(0, 1, 2)) << base;
+  for (const std::string base : {"velocity_", "U", "coordinates "})
+    EXPECT_THAT(components({base + "1", base + "2", base + "3"}), ElementsAre(0, 1, 2)) << base;
+  EXPECT_THAT(components({"velocity_0", "velocity_1", "velocity_2", "U1", "U2", "V0"}), ElementsAre(0, 1, 2, 0, 1, -1));
+  EXPECT_THAT(components({"stress:0", "stress:1", "stress:2", "stress:3", "stress:4", "stress:5"}), ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(components({"stress_0", "stress_1", "stress_2", "stress_3"}), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(components({"stress:0", "stress:1", "stress:2", "stress:3", "stress:4", "stress:5", "stress:6", "stress:7", "stress:8"}),
+              ElementsAre(0, 3, 5, 3, 1, 4, 5, 4, 2));
+  EXPECT_THAT(components({"s_1", "s_2", "s_3"}), ElementsAre(-1, -1, -1)) << "principal stresses, perhaps";
+}
+
+TEST_F(Points, ATensorWithNineNumbersIsSymmetric)
+{
+  const std::string names = "x,y,s:0,s:1,s:2,s:3,s:4,s:5,s:6,s:7,s:8\n", rest = "1,0,1,0,0,0,1,0,0,0,1\n0,1,1,0,0,0,1,0,0,0,1\n";
+  const StartPoints points = read(names + "0,0,-1,4,5,4,-2,6,5,6,-3\n" + rest);
+  EXPECT_THAT(points.stress[0], ElementsAre(-1, -2, -3, 4, 0, 0));
+  EXPECT_EQ(refusal(names + "0,0,-1,4,5,3,-2,6,5,6,-3\n" + rest),
+            "2: s:1 is 4 and s:3 is 3, in all at 1 of 3 points: a tensor of stress is symmetric\n");
+  EXPECT_THAT(read("x,y,sxx,syy,szz,syx\n0,0,1,2,3,4\n1,0,1,1,1,0\n0,1,1,1,1,0\n").stress[0], ElementsAre(1, 2, 3, 4, 0, 0));
+}
+
+TEST_F(Points, WhatTheLawRemembersIsInItsUnit)
+{
+  const std::vector<HistoryVariable> history{{"preconsolidation", "Pa", ""}, {"plastic_strain", "-", ""}, {"age", "d", ""}};
+  const auto table = [](const std::string& pressure, const std::string& strain, const std::string& age) {
+    return fmt::format(
+        "x,y,sxx,syy,szz,sxy,preconsolidation{},plastic_strain{},age{}\n0,0,0,0,0,0,5,6,7\n1,0,0,0,0,0,5,6,7\n0,1,0,0,0,0,5,6,7\n",
+        pressure, strain, age);
+  };
+  const auto first = [&](const std::string& text) {
+    const StartPoints points = read(text, {}, 2, history);
+    EXPECT_EQ(points.history.size(), 3U);
+    std::vector<Real> values;
+    for (const auto& [key, column] : points.history)
+      values.push_back(column.front());
+    return values;
+  };
+  EXPECT_THAT(first(table("", "", "")), ElementsAre(5, 6, 7));
+  EXPECT_THAT(first(table(" [kPa]", " [%]", " [d]")), ElementsAre(5e3, 0.06, 7));
+  EXPECT_THAT(first(table(" [MPa]", " [-]", "")), ElementsAre(5e6, 6, 7));
+  const std::string wrong = refusal(table(" [bar]", " [m]", " [s]"), {}, 2, history);
+  EXPECT_THAT(wrong,
+              HasSubstr("1: column \"preconsolidation\" has the unit \"bar\"; known for this history variable: Pa, kPa, MPa, GPa, N/m^2"));
+  EXPECT_THAT(wrong, HasSubstr("1: column \"plastic_strain\" has the unit \"m\"; known for this history variable: -, 1 and %"));
+  EXPECT_THAT(wrong, HasSubstr("1: column \"age\" has the unit \"s\"; known for this history variable: d"));
+}
+
 TEST_F(Points, TakesWhatTheLawRemembersAndTheBodyMoves)
 {
   const StartPoints points = read(
       "x y sxx syy szz sxy vx vy ux uy Plastic-Strain word\n0 0 1 1 1 0 3 4 5 6 0.25 a\n1 0 1 1 1 0 3 4 5 6 0.25 b\n0 1 1 1 1 0 3 4 5 6 "
       "0.5 c\n",
-      {.displacement = Carried::keep}, 2, {"plastic_strain", "plastic_work"});
+      {.displacement = Carried::keep}, 2, {{"plastic_strain", "-", ""}, {"plastic_work", "J/m^3", ""}});
   EXPECT_THAT(points.velocity[0], ElementsAre(3, 4, 0));
   EXPECT_THAT(points.displacement[0], ElementsAre(5, 6, 0));
   ASSERT_EQ(points.history.size(), 1U);
@@ -114,6 +173,22 @@ TEST_F(Points, PointsAtOnePlaceHaveOneValue)
       refusal(plain + "1,0,-1,-2,-3.5,4\n"),
       "7: it lies where that of line 3 does, (1, 0), and has other values: average them, give values of cells (data), or tell materials "
       "apart (select)\n");
+}
+
+/// A stress of some kPa is larger by far than every velocity.
+TEST_F(Points, QuantitiesOfPointsAtOnePlaceAreComparedByThemselves)
+{
+  const std::string names = "x,y,sxx,syy,szz,sxy,pore_pressure,vx,vy,ux,uy,plastic_strain\n";
+  const std::string rest = "1,0,-1e5,-1e5,-1e5,0,1e4,2,0,0.1,0,0.02\n0,1,-1e5,-1e5,-1e5,0,1e4,2,0,0.1,0,0.02\n";
+  const auto wrong = [&](const std::string& twice) {
+    return refusal(names + rest + "0,0,-1e5,-1e5,-1e5,0,1e4,0,0,0,0,0\n" + twice, {.displacement = Carried::keep}, 2,
+                   {{"plastic_strain", "-", ""}});
+  };
+  EXPECT_EQ(wrong("0,0,-1e5,-1e5,-1e5,1e-2,1e4,1e-7,0,0,1e-9,1e-9\n"), "") << "rounding";
+  EXPECT_THAT(wrong("0,0,-1e5,-1e5,-1e5,0,1e4,1e-3,0,0,0,0\n"), HasSubstr("5: it lies where that of line 4 does"));
+  EXPECT_THAT(wrong("0,0,-1e5,-1e5,-1e5,0,1e4,0,0,0,1e-4,0\n"), HasSubstr("5: it lies where that of line 4 does"));
+  EXPECT_THAT(wrong("0,0,-1e5,-1e5,-1e5,0,1e4,0,0,0,0,1e-3\n"), HasSubstr("5: it lies where that of line 4 does"));
+  EXPECT_THAT(wrong("0,0,-1e5,-1e5,-1e5,1,1e4,0,0,0,0,0\n"), HasSubstr("5: it lies where that of line 4 does"));
 }
 
 TEST_F(Points, WhatIsMissingOrWrongIsSaidWithItsLine)
