@@ -181,7 +181,7 @@ class StartOfBody {
     for (PlacesFound* const found : {&found_.unknown, &found_.refused})
       *found = {ranks_.sum(found->count), ranks_.min(found->first)};
     const Real least = 1e-6 * found_.largest;  // of the largest stress: rounding in files of single precision
-    if (material_.law().description().has_strength)
+    if (material_.law().description().has_strength && found_.refused.count == 0)
       found_.outside = parallel_sum<std::int64_t>(body_.size(), [&](Index i) { return std::int64_t{yields(i) > least ? 1 : 0}; });
     found_.outside = ranks_.sum(found_.outside), found_.pulled = ranks_.sum(found_.pulled);
   }
@@ -223,8 +223,10 @@ class StartOfBody {
       for (const HistoryVariable& variable : material_.law().variables())
         if (variable.key == key)
           history_value(material_, variable, i) = fit.at_within([&](Index k) { return values[static_cast<std::size_t>(k)]; });
-    if (!material_.prestress(i, unpack(stress)))
+    if (!material_.prestress(i, unpack(stress))) {
       found.refused = {1, particles_.id[p]};
+      return found;
+    }
     found.largest = stress.norm();
     found.change = yields(i, stress);
     found.pulled = stress.head<3>().sum() > 0 ? 1 : 0;

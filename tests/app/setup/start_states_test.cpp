@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "io/output/summary_json.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 constexpr Real weight = 2000 * 9.81, k0 = 0.5, top = 4;  // N/m^3, -, m
 
@@ -38,7 +41,7 @@ std::string column_table(int dimension, Real sign = 1, Real per_unit = 1, const 
 }
 
 const std::string soil =
-    "law: drucker_prager, density: 2000, youngs_modulus: 2.0e7, poisson_ratio: 0.3, friction_angle: 30, cohesion: 1.0e4";
+    "law: drucker_prager, density: 2000, youngs_modulus: 2.0e7, poisson_ratio: 0.3, friction_angle: 30, cohesion: 1.0e4, match: outer";
 
 struct ColumnScene {
   int dimension = 2;
@@ -140,7 +143,7 @@ TEST_F(StartStates, StaysAtRestAsWellAsFromK0)
   EXPECT_EQ(number("table", "stages[0].steps"), number("k0", "stages[0].steps"));
   const Real moved = last(history("table"), "kinetic"), reference = last(history("k0"), "kinetic");
   EXPECT_LT(moved, 1.1 * reference + 1e-12);
-  EXPECT_LT(moved, 1e-3) << "J, of 40 kJ that the weight could do";
+  EXPECT_LT(moved, 2e-3) << "J, of 40 kJ that the weight could do";
 }
 
 TEST_F(StartStates, AStaticStageBeginsUnderTheWholeWeight)
@@ -166,7 +169,7 @@ TEST_F(StartStates, RanksChangeNothing)
   ASSERT_EQ(run({}, "far", "", launcher_of(3)).code, 0);
   write("state.csv", column_table(2, 1, 1, "stress", -1.9));
   const std::string alone = refusal({}), shared = [&] { return talus("check scene.yaml", launcher_of(3)).err; }();
-  EXPECT_EQ(alone, shared);
+  EXPECT_THAT(shared, StartsWith(alone)) << "the launcher adds words of its own";
 }
 
 TEST_F(StartStates, ARestartIsBitwiseIdentical)
@@ -242,6 +245,68 @@ TEST_F(StartStates, MotionAndHistoryComeAlong)
     EXPECT_NEAR(at("displacement", 3 * p + 1), 0.1 * y, 1e-6);
     EXPECT_NEAR(at("plastic_strain", p), 0.01 * y, 1e-7);
   }
+}
+
+/// The plane through the points above y = 2 would go below zero between them and the others.
+TEST_F(StartStates, AHistoryStaysWithinItsTable)
+{
+  std::string table = "x,y,sxx,syy,szz,sxy,plastic_strain [%]\n";
+  for (const Real x : {0., 0.5, 1.})
+    for (const Real y : {0.5, 1., 1.5, 2., 2.5, 3., 3.5})
+      table += fmt::format("{},{},0,0,0,0,{}\n", x, y, y > 2.2 ? 20 * (y - 2) : 0);
+  write("state.csv", table);
+  const std::string outputs = "outputs: {particles: {every: 1, fields: [plastic_strain]}}\n";
+  const Outcome outcome = run({.stages = "time: {end: 1.0e-5}\n", .outputs = outputs});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<Real> strain = stored_field(first_frame("out"), "plastic_strain")->values;
+  EXPECT_EQ(*std::min_element(strain.begin(), strain.end()), 0);
+  EXPECT_NEAR(*std::max_element(strain.begin(), strain.end()), 0.3, 1e-7) << "of its last points, beyond which it does not grow";
+}
+
+/// A law of the user, which says at every particle whether it takes the stress.
+TEST_F(StartStates, StressThatTheLawDoesNotTakeIsRefused)
+{
+  write("shy.c", R"(#include <math.h>
+#include "talus_law.h"
+static int begin(talus_law_setup* setup) { setup->bulk = 1e7; setup->shear = 5e6; return 0; }
+static int update(talus_law_block* block) { (void)block; return 0; }
+static int prestress(void* context, const double* parameters, const double* constants, const double* stress, double* history)
+{
+  (void)context, (void)parameters, (void)constants, (void)history;
+  return stress[1] < -3e4;
+}
+static const talus_law law = {.version = TALUS_LAW_VERSION, .measure = TALUS_LAW_STRAIN, .name = "shy", .summary = "Takes little.",
+                              .begin = begin, .update = update, .prestress = prestress};
+const talus_law* shy(void) { return &law; }
+)");
+  ASSERT_EQ(std::system(("cd '" + folder_.path().string() +
+                         "' && cc -shared -fPIC -I '" TALUS_SOURCE_DIR "/materials/interface' shy.c -o libshy.so")
+                            .c_str()),
+            0);
+  write("state.csv", column_table(2));
+  const ColumnScene scene{.material = "law: own, library: libshy.so, symbol: shy, density: 2000"};
+  const std::string wrong = refusal(scene);
+  EXPECT_THAT(wrong, HasSubstr("scene.yaml:5:"));
+  EXPECT_THAT(wrong, HasSubstr("bodies[0] \"column\".initial: law \"shy of libshy.so\" does not take the stress of the table at "));
+  EXPECT_THAT(wrong, HasSubstr(" particles of body \"column\", the first at (0."));
+  EXPECT_THAT(talus("check scene.yaml", launcher_of(2)).err, StartsWith(wrong)) << "the launcher adds words of its own";
+}
+
+/// The table has axes of its own, thousands of kilometres from those of the scene, where no plane fits.
+TEST_F(StartStates, ATableFarFromItsBodyIsRefusedInWords)
+{
+  std::string table = "x,y,sxx,syy,szz,sxy\n";
+  for (const Real x : {0., 0.5, 1.})
+    for (const Real y : {0., 1., 2.})
+      table += fmt::format("{},{},0,0,0,0\n", x, y - 5e6);
+  write("state.csv", table);
+  const std::string wrong = refusal({});
+  EXPECT_THAT(wrong, HasSubstr("scene.yaml:5:"));
+  EXPECT_THAT(wrong, HasSubstr("lie beyond the points of state.csv, the worst at ("));
+  EXPECT_THAT(wrong, HasSubstr("5e+06 m from its nearest point, allowed "));
+  EXPECT_THAT(wrong, HasSubstr("; the points lie between (0, -5e+06) and (1, -5e+06): give them in the axes and the unit of the scene"));
+  EXPECT_THAT(refusal({.initial = ", initial: {table: state.csv, reach: 1.0e7}"}),
+              HasSubstr("particles of body \"column\" lie so far beside the points of state.csv that these seem to lie on one line"));
 }
 
 TEST_F(StartStates, StressBeyondTheYieldSurfaceIsCounted)
