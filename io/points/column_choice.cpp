@@ -13,7 +13,7 @@ Real factor_of(StressUnit unit) { return unit == StressUnit::Pa ? 1 : unit == St
 
 }  // namespace
 
-ColumnChoice::ColumnChoice(const StartStateSpec& spec, const PointTable& table, std::vector<SceneError>& problems)
+ColumnChoice::ColumnChoice(const StartStateSpec& spec, const PointFile& table, std::vector<SceneError>& problems)
     : spec_(spec), table_(table), problems_(problems)
 {
   std::vector<std::string> names;

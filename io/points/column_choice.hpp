@@ -25,7 +25,7 @@ using UsedColumns = std::vector<UsedColumn>;
 class ColumnChoice {
  public:
   /// `table` and `problems` must stay.
-  ColumnChoice(const StartStateSpec& spec, const PointTable& table, std::vector<SceneError>& problems);
+  ColumnChoice(const StartStateSpec& spec, const PointFile& table, std::vector<SceneError>& problems);
 
   /// The columns of these components of a quantity, if all of them are there.
   std::optional<UsedColumns> find(PointQuantity quantity, std::span<const std::size_t> components);
@@ -50,7 +50,7 @@ class ColumnChoice {
   UsedColumn use(std::size_t column, PointQuantity quantity);
 
   const StartStateSpec& spec_;
-  const PointTable& table_;
+  const PointFile& table_;
   std::vector<SceneError>& problems_;
   std::vector<ColumnMeaning> meanings_;
   std::array<OfComponents, 7> columns_{}, mirrored_{};

@@ -88,7 +88,7 @@ void keep_points(const std::vector<bool>& keep, StartPoints& points)
 }
 
 template <int D>
-void merge_in(const PointTable& table, const std::vector<std::size_t>& rows, StartPoints& points, std::vector<SceneError>& problems)
+void merge_in(const PointFile& table, const std::vector<std::size_t>& rows, StartPoints& points, std::vector<SceneError>& problems)
 {
   constexpr Real same_place = 1e-9;  // of the extent
   constexpr Index most_at_a_place = 16;
@@ -125,7 +125,7 @@ void merge_in(const PointTable& table, const std::vector<std::size_t>& rows, Sta
 
 }  // namespace
 
-void merge_equal_points(const PointTable& table, const std::vector<std::size_t>& rows, int dimension, StartPoints& points,
+void merge_equal_points(const PointFile& table, const std::vector<std::size_t>& rows, int dimension, StartPoints& points,
                         std::vector<SceneError>& problems)
 {
   dimension == 2 ? merge_in<2>(table, rows, points, problems) : merge_in<3>(table, rows, points, problems);

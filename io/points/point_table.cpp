@@ -84,10 +84,10 @@ PointColumn heading_column(const std::string& heading)
   return column;
 }
 
-PointTable read_text_table(const fs::path& file)
+PointFile read_text_table(const fs::path& file)
 {
   const std::string text = plain_text(file, read_whole(file));
-  PointTable table{.file = file, .columns = {}, .line = {}, .heading = 0};
+  PointFile table{.file = file, .columns = {}, .line = {}, .heading = 0};
   std::vector<SceneError> problems;
   char separator = ' ';
   int number = 0;
@@ -150,7 +150,7 @@ std::vector<std::string> endings_of(const VtkField& field)
   return endings;
 }
 
-void add_column(PointTable& table, std::string name, std::string unit, std::span<const Real> values, std::size_t width, std::size_t first)
+void add_column(PointFile& table, std::string name, std::string unit, std::span<const Real> values, std::size_t width, std::size_t first)
 {
   PointColumn& column = table.columns.emplace_back(PointColumn{std::move(name), std::move(unit), {}, {}});
   column.values.reserve(values.size() / width);
@@ -178,12 +178,12 @@ bool has_stress(const std::vector<VtkField>& fields)
   return std::ranges::any_of(meanings_of(names), &ColumnMeaning::is_stress);
 }
 
-PointTable read_vtk_table(const fs::path& file, PointsOf data)
+PointFile read_vtk_table(const fs::path& file, PointsOf data)
 {
   const VtkPoints from = read_vtk_points(file);
   const bool cells = data == PointsOf::cells || (data == PointsOf::automatic && !has_stress(from.of_points) && has_stress(from.of_cells));
   const std::vector<Real>& places = cells ? from.cells : from.points;
-  PointTable table{.file = file, .columns = {}, .line = {}, .heading = 0};
+  PointFile table{.file = file, .columns = {}, .line = {}, .heading = 0};
   for (std::size_t d = 0; d < 3; ++d)
     add_column(table, std::string(1, "xyz"[d]), "m", places, 3, d);
   for (const VtkField& field : cells ? from.of_cells : from.of_points) {
@@ -196,10 +196,10 @@ PointTable read_vtk_table(const fs::path& file, PointsOf data)
 
 }  // namespace
 
-SourceLocation PointTable::where(std::size_t row) const { return {file.string(), line.empty() ? 0 : line[row], line.empty() ? 0 : 1, ""}; }
-std::string PointTable::named(std::size_t row) const { return line.empty() ? fmt::format("point {}: ", row) : std::string(); }
+SourceLocation PointFile::where(std::size_t row) const { return {file.string(), line.empty() ? 0 : line[row], line.empty() ? 0 : 1, ""}; }
+std::string PointFile::named(std::size_t row) const { return line.empty() ? fmt::format("point {}: ", row) : std::string(); }
 
-PointTable read_point_table(const fs::path& file, PointsOf data)
+PointFile read_point_table(const fs::path& file, PointsOf data)
 {
   if (std::error_code unknown; !fs::exists(file, unknown))
     throw EnvironmentError(fmt::format("there is no file {}", file.string()));

@@ -15,7 +15,7 @@ struct PointColumn {
   std::map<std::size_t, std::string> words;  ///< entries that are no finite numbers, by row
 };
 
-struct PointTable {
+struct PointFile {
   std::filesystem::path file;
   std::vector<PointColumn> columns;
   std::vector<int> line;  ///< in the file, of each row; empty: rows have no lines
@@ -29,6 +29,6 @@ struct PointTable {
 /// Reads a text with a heading (entries between commas, semicolons, tabs or blanks; `#` begins a comment), or VTK's .vtu or .vtp.  Vectors and
 /// tensors of VTK become columns with the endings _x, _y, _z and _xx, _yy, _zz, _xy, _yz, _xz, and positions x, y, z.  Throws SceneErrors with
 /// lines, EnvironmentError for a file that is not there or cannot be read.
-PointTable read_point_table(const std::filesystem::path& file, PointsOf data);
+PointFile read_point_table(const std::filesystem::path& file, PointsOf data);
 
 }  // namespace talus

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t most_problems_of_points = 20;
 
 /// The rows that the scene selects.
-std::vector<std::size_t> selected_rows(const StartStateSpec& spec, const PointTable& table, const ColumnChoice& choice,
+std::vector<std::size_t> selected_rows(const StartStateSpec& spec, const PointFile& table, const ColumnChoice& choice,
                                        std::vector<SceneError>& problems)
 {
   std::vector<std::size_t> rows;
@@ -53,7 +53,7 @@ std::vector<std::size_t> selected_rows(const StartStateSpec& spec, const PointTa
 /// Takes the columns out of the table.
 class PointReader {
  public:
-  PointReader(const StartStateSpec& spec, PointTable table, int dimension)
+  PointReader(const StartStateSpec& spec, PointFile table, int dimension)
       : spec_(spec), table_(std::move(table)), dimension_(static_cast<std::size_t>(dimension)), choice_(spec, table_, problems_)
   {}
 
@@ -192,7 +192,7 @@ class PointReader {
   }
 
   const StartStateSpec& spec_;
-  PointTable table_;
+  PointFile table_;
   std::size_t dimension_;
   std::vector<SceneError> problems_;
   ColumnChoice choice_;

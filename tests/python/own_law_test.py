@@ -4,7 +4,6 @@
 Usage: own_law_test.py PROGRAM
 """
 import csv
-import json
 import os
 import shutil
 import signal
@@ -176,7 +175,7 @@ class OwnLaws(unittest.TestCase):
             for a, b in zip(own, usual):
                 for key in ("stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz", "stress_xz"):
                     self.assertLess(abs(a[key] - b[key]), 1e-12 * 4e4 * 10, key)
-                self.assertLess(abs(a["plastic_work"] - b["plastic_work"]), 5e-3 * b["plastic_work"] + 1e-3)   # per initial and present volume
+                self.assertLess(abs(a["plastic_work"] - b["plastic_work"]), 0.02 * b["plastic_work"] + 1e-3)   # per initial and present volume
                 self.assertEqual(a["plastic_strain"] > 0, b["plastic_work"] > 0)
 
     def test_errors_of_laws_in_python_have_their_line(self):
@@ -256,7 +255,8 @@ class OwnLaws(unittest.TestCase):
         text = (self.folder / name).read_text() + "watch: {on_failure: delete, failed_mass: 0.01}\n"
         (self.folder / name).write_text(text)
         self.run_scene(name, "without")
-        self.assertEqual(json.loads((self.folder / "without/summary.json").read_text())["deleted_particles"], 1)
+        first, last = (open_run(self.folder / "without").particles[k]["id"] for k in (0, -1))
+        self.assertEqual(set(first) - set(last), {4})
 
     def test_laws_of_a_scene_share_names_of_one_form(self):
         (self.folder / "both.c").write_text(ORTHOTROPIC)
