@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "solver/set_velocities.hpp"
 #include "solver/stages.hpp"
-#include "solver/step/set_velocities.hpp"
 
 namespace talus {
 

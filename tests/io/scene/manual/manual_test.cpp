@@ -11,6 +11,7 @@
 
 #include "io/output/output_fields.hpp"
 #include "io/scene/scene_rules.hpp"
+#include "materials/interface/own_law.hpp"
 #include "materials/laws.hpp"
 
 namespace talus::manual_test {
@@ -138,7 +139,7 @@ TEST(Schema, KnowsKeysTypesRangesAndWords)
   EXPECT_EQ(keys.at("dimension").at("maximum"), 3);
   EXPECT_EQ(keys.at("time").at("properties").at("end").at("exclusiveMinimum"), 0);
   EXPECT_EQ(keys.at("transfer").at("properties").at("scheme").at("enum"), (nlohmann::json{"flip", "apic", "tpic", "aflip"}));
-  EXPECT_EQ(keys.at("materials").at("items").at("allOf").size(), Laws::size);
+  EXPECT_EQ(keys.at("materials").at("items").at("allOf").size(), Laws::size + LawsInLibraries::size);
   EXPECT_EQ(keys.at("loads").at("items").at("allOf").at(0).at("then").at("properties").at("type").at("const"), "gravity");
   EXPECT_EQ(keys.at("loads").at("items").at("properties").at("type").at("enum"), (nlohmann::json{"gravity", "body_force", "traction"}));
   EXPECT_THAT(schema.at("required").get<std::vector<std::string>>(),

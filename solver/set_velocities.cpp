@@ -1,4 +1,4 @@
-#include "solver/step/set_velocities.hpp"
+#include "solver/set_velocities.hpp"
 
 #include <algorithm>
 
