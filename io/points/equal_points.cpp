@@ -38,10 +38,12 @@ Real largest_gap(const Vector& a, const Vector& b)
 /// Says whether two points of a table have the same values.
 class SameValues {
  public:
-  explicit SameValues(const StartPoints& points) : points_(points)
+  explicit SameValues(const StartPoints& points)
+      : points_(points),
+        stress_(std::max(largest(points.stress), largest(points.pore))),  // both are stresses, of which the law gets the sum
+        velocity_(largest(points.velocity)),
+        displacement_(largest(points.displacement))
   {
-    stress_ = std::max(largest(points.stress), largest(points.pore));  // both are stresses, of which the law gets the sum
-    velocity_ = largest(points.velocity), displacement_ = largest(points.displacement);
     for (const auto& [key, column] : points.history)
       history_.push_back(largest(column));
   }
