@@ -5,7 +5,7 @@
 #include "app/commands/bench/bench_command.hpp"
 #include "app/commands/calibrate_command.hpp"
 #include "app/commands/check_command.hpp"
-#include "app/commands/converge/converge_command.hpp"
+#include "app/commands/converge_command.hpp"
 #include "app/commands/diff_command.hpp"
 #include "app/commands/drive_command.hpp"
 #include "app/commands/fos_command.hpp"

@@ -30,30 +30,22 @@ void StudyCommands::add_converge(CLI::App& app)
   CLI::App* converge =
       app.add_subcommand("converge", "run a scene with cells of several sizes: order of convergence and uncertainty of its results");
   converge->add_option("scene", converge_.scene, "scene file (.yaml) whose mesh Talus makes")->type_name(scene_value)->required();
-  converge->add_option("--out", converge_.out, "folder of levels and table; default runs/<name of the scene>_convergence")
-      ->type_name(folder_value);
-  converge->add_option("--ratio", converge_.ratio, "size of cells over that of the next finer level; default sqrt(2)")
-      ->check(number_within(1.2, 4.0));
-  converge->add_option("--levels", converge_.levels, "how many; default 3")->check(number_within(3, most_levels));
-  converge
-      ->add_option("--finer", converge_.finer, "how many of them have smaller cells than the scene; default 0: its cells and larger ones")
+  const OptionsOfPython words(*converge, converge_.words);
+  words.add("--out", "folder of levels and table; default runs/<name of the scene>_convergence")->type_name(folder_value);
+  words.add("--ratio", "size of cells over that of the next finer level; default sqrt(2)")->check(number_within(1.2, 4.0));
+  words.add("--levels", "how many; default 3")->check(number_within(3, most_levels));
+  words.add("--finer", "how many of them have smaller cells than the scene; default 0: its cells and larger ones")
       ->check(number_within(0, most_levels - 1));
-  CLI::Option* collect =
-      converge->add_option("--collect", converge_.collect, "numbers, such as toe or max(kinetic); default all physical results");
-  collect->delimiter(',');
-  converge->add_option("--within", converge_.within, "status 1 unless each of --collect is within this share, such as 0.05")
-      ->check(number_above_zero())
-      ->needs(collect);
-  converge->add_option("--set", converge_.set, set_help);
-  converge->add_option("--jobs", converge_.jobs, "levels at a time; default 1, as the finest takes most of the time")
-      ->check(number_within(1, 1024));
-  converge->add_option("--threads", converge_.threads, "threads of each; default as for a run, with --jobs the cores over that")
-      ->check(number_within(1, 1024));
-  converge->add_option("--launcher", converge_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
-  converge->add_flag("--list", converge_.list, "run nothing: tell the levels and how far they are");
-  converge->add_flag("--json", converge_.json, "print convergence.json and nothing else");
-  converge->add_flag("--quick", converge_.quick, "each level coarse and short: only to see that they run");
-  converge->add_flag("--quiet", converge_.quiet, "no progress and no table");
+  CLI::Option* collect = words.add_list("--collect", "numbers, such as toe or max(kinetic); default all physical results")->delimiter(',');
+  words.add("--within", "status 1 unless each of --collect is within this share, such as 0.05")->check(number_above_zero())->needs(collect);
+  words.add_list("--set", set_help);
+  words.add("--jobs", "levels at a time; default 1, as the finest takes most of the time")->check(number_within(1, 1024));
+  words.add("--threads", "threads of each; default as for a run, with --jobs the cores over that")->check(number_within(1, 1024));
+  words.add("--launcher", "what each run is started by, such as \"mpirun -n 4\"");
+  words.add_flag("--list", "run nothing: tell the levels and how far they are");
+  words.add_flag("--json", "print convergence.json and nothing else");
+  words.add_flag("--quick", "each level coarse and short: only to see that they run");
+  words.add_flag("--quiet", "no progress and no table");
   converge->callback([this] { talus::converge(converge_); });
 }
 

@@ -60,6 +60,13 @@ SceneFacts facts_of(const Scene& scene)
     facts.stages.push_back({.name = name_of(stage), .type = type_of(stage)});
   for (const BodySpec& body : scene.bodies)
     facts.bodies.push_back(body_of(scene, body));
+  const auto add_block = [&](SourceLocation where, const char* key) {
+    where.path = key;
+    facts.blocks.push_back(std::move(where));
+  };
+  add_block(scene.mesh.where, "mesh");
+  if (scene.initial)
+    add_block(scene.initial->where, "initial");
   return facts;
 }
 

@@ -1,8 +1,10 @@
 // The command talus check --variants.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "app/commands/check_command.hpp"
 #include "app/run/simulate.hpp"
@@ -84,13 +86,19 @@ class VariantChecks {
       return;
     }
     const std::string mesh_digest = digest_text(digest(*mesh));
+    Real volume = 0;
+    for (Index c = 0; c < mesh->n_cells(); ++c)
+      volume += mesh->volume(c);
+    const Real cell_size = std::pow(volume / static_cast<Real>(mesh->n_cells()), Real{1} / D);
     for (const std::size_t i : variants) {
-      found_[i].mesh_digest = mesh_digest;
+      found_[i].mesh_digest = mesh_digest, found_[i].cells = mesh->n_cells(), found_[i].cell_size = cell_size;
       if (asked_.depth == CheckDepth::meshes || asked_.variants[i].built_on == mesh_digest)
         continue;
       try {
         const Scene scene = scene_of(i);
-        estimate<D>(scene, *mesh, set_up(scene, *mesh));
+        Setup<D> setup = set_up(scene, *mesh);
+        found_[i].particles = setup.n_particles;
+        estimate<D>(scene, *mesh, std::move(setup));
       } catch (const SceneErrors& e) {
         found_[i].errors = e.problems();
       }

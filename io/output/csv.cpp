@@ -104,16 +104,11 @@ std::string csv_cell(std::string text)
   return quoted + '"';
 }
 
-std::string csv_heading(const CsvColumn& column)
-{
-  return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
-}
-
 std::string csv_header(std::span<const CsvColumn> columns)
 {
   std::string line;
-  for (const CsvColumn& column : columns)
-    line.append(line.empty() ? "" : ",").append(csv_cell(csv_heading(column)));
+  for (const auto& [name, unit] : columns)
+    line.append(line.empty() ? "" : ",").append(csv_cell(unit.empty() ? name : fmt::format("{} [{}]", name, unit)));
   return line + '\n';
 }
 

@@ -23,9 +23,7 @@ struct CsvColumn {
 /// A text as one cell: quoted according to RFC 4180, with line ends as blanks.  A text that a spreadsheet would run as a formula gets an
 /// apostrophe (csv.cpp).
 std::string csv_cell(std::string text);
-/// The heading "name [unit]".
-std::string csv_heading(const CsvColumn& column);
-/// The line with the headings of all columns.
+/// The line with the headings of all columns, such as "name [unit]".
 std::string csv_header(std::span<const CsvColumn> columns);
 
 /// A history while it is being written.  The first column is the time [s], and times increase.  Every row reaches the file before append()

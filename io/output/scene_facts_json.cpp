@@ -19,12 +19,11 @@ FactsJson law_object(const std::optional<FactsOfLaw>& law)
           {"variables", law->variables}};
 }
 
+FactsJson place_object(const SourceLocation& at) { return {{"file", at.file}, {"line", at.line}, {"column", at.column}, {"key", at.path}}; }
+
 FactsJson body_object(const FactsOfBody& body, bool with_particles)
 {
-  const SourceLocation& at = body.where;
-  FactsJson object{{"name", body.name},
-                   {"where", {{"file", at.file}, {"line", at.line}, {"column", at.column}, {"key", at.path}}},
-                   {"stages", FactsJson::array()}};
+  FactsJson object{{"name", body.name}, {"where", place_object(body.where)}, {"stages", FactsJson::array()}};
   for (const std::optional<FactsOfLaw>& law : body.stages)
     object["stages"].push_back(law_object(law));
   if (with_particles)
@@ -52,6 +51,9 @@ std::string to_json(const SceneFacts& facts)
     json["bodies"].push_back(body_object(body, facts.mesh.has_value()));
   json["warnings"] = facts.warnings;
   json["scene"] = {{"file", facts.file}, {"digest", facts.digest}, {"set", facts.overrides}};
+  json["where"] = FactsJson::array();
+  for (const SourceLocation& block : facts.blocks)
+    json["where"].push_back(place_object(block));
   json["keys"] = FactsJson::parse(facts.keys);
   return json.dump(2, ' ', false, FactsJson::error_handler_t::replace) + '\n';
 }

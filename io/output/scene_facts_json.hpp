@@ -44,7 +44,8 @@ struct SceneFacts {
   };
   std::vector<Stage> stages;
   std::vector<FactsOfBody> bodies;
-  std::optional<FactsOfMesh> mesh;  ///< nothing if it was not made
+  std::vector<SourceLocation> blocks;  ///< places of the blocks `mesh` and, if it is there, `initial`
+  std::optional<FactsOfMesh> mesh;     ///< nothing if it was not made
 };
 
 std::string to_json(const SceneFacts& facts);

@@ -83,9 +83,8 @@ SummaryBack read_summary(const std::filesystem::path& file)
     SummaryBack back;
     back.status = text_behind(json, "status");
     back.message = text_behind(json, "message");
-    back.commit = text_behind(json.at("program"), "commit");
-    back.scene_digest = text_behind(json.at("scene"), "digest");
-    back.mesh_digest = text_behind(json.at("mesh"), "digest");
+    for (const char* part : {"program", "mesh", "stages"})
+      json.at(part);
     back.title = text_behind(json, "title");
     back.scene_file = text_behind(json.at("scene"), "file");
     back.overrides = texts_behind(json.at("scene"), "set");
@@ -94,8 +93,6 @@ SummaryBack read_summary(const std::filesystem::path& file)
       back.bodies.push_back({text_behind(body, "name"), text_behind(body, "material"), text_behind(body, "law"),
                              count_behind(body, "particles"), number_behind(body, "mass [kg]")});
     back.text = text;
-    for (const SummaryJson& stage : json.at("stages"))
-      back.quick = back.quick || text_behind(stage, "result") == "quick";
     add_numbers(json, "", "", back.numbers);
     return back;
   } catch (const SummaryJson::exception& e) {

@@ -9,13 +9,11 @@
 namespace talus {
 
 struct SummaryBack {
-  std::string status, message, commit, scene_digest, mesh_digest;  ///< empty if not in the file
-  std::string title, scene_file;
-  std::vector<std::string> overrides, warnings;  ///< changes of the scene by --set; warnings of the run
-  std::vector<BodySummary> bodies;               ///< without masses
-  std::string text;                              ///< text of the file
-  bool quick = false;                            ///< whether it was a quick run
-  std::vector<NamedValue> numbers;               ///< with the path of their keys without units, such as "balances.energy.terms.plastic"
+  std::string status, message, title, scene_file;  ///< empty if not in the file
+  std::vector<std::string> overrides, warnings;    ///< changes of the scene by --set; warnings of the run
+  std::vector<BodySummary> bodies;                 ///< without masses
+  std::string text;                                ///< text of the file
+  std::vector<NamedValue> numbers;                 ///< with the path of their keys without units, such as "balances.energy.terms.plastic"
 };
 
 /// Throws EnvironmentError with the name of the file if it cannot be read or is not a summary of a run.

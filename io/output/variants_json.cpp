@@ -41,8 +41,13 @@ std::string variants_text(const std::string& commit, const std::vector<VariantFo
                         {"key", error.where.path},
                         {"text", error.message},
                         {"source", error.source_line}});
-    json["variants"].push_back(
-        {{"scene_digest", one.scene_digest}, {"mesh_digest", one.mesh_digest}, {"fronts", one.fronts}, {"errors", std::move(errors)}});
+    json["variants"].push_back({{"scene_digest", one.scene_digest},
+                                {"mesh_digest", one.mesh_digest},
+                                {"fronts", one.fronts},
+                                {"cells", one.cells},
+                                {"cell_size [m]", one.cell_size},
+                                {"particles", one.particles},
+                                {"errors", std::move(errors)}});
   }
   return json.dump(-1, ' ', false, VariantsJson::error_handler_t::replace) + '\n';
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/types.hpp"
 
 namespace talus {
 
@@ -30,11 +31,13 @@ VariantsAsked read_variants(const std::filesystem::path& file);
 struct VariantFound {
   std::string scene_digest, mesh_digest;  ///< as in summary.json; empty if unknown
   std::vector<std::string> fronts;        ///< columns of run-out in the history
+  std::int64_t cells = 0, particles = 0;  ///< of a mesh and a model that were made
+  Real cell_size = 0;                     ///< (volume of the mesh / cells)^(1/D) [m]
   std::vector<SceneError> errors;
 };
 
-/// {"commit": ..., "variants": [{"scene_digest": ..., "mesh_digest": ..., "fronts": [...], "errors": [{"file": ..., "line": ..., "column":
-/// ..., "key": ..., "text": ..., "source": ...}]}]}, with the variants in their order.
+/// {"commit": ..., "variants": [{"scene_digest": ..., "mesh_digest": ..., "fronts": [...], "cells": ..., "cell_size [m]": ..., "particles":
+/// ..., "errors": [{"file": ..., "line": ..., "column": ..., "key": ..., "text": ..., "source": ...}]}]}, with the variants in their order.
 std::string variants_text(const std::string& commit, const std::vector<VariantFound>& found);
 
 }  // namespace talus

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -21,8 +20,6 @@
 namespace talus {
 
 namespace {
-
-int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : ChildProcess::of_signal + WTERMSIG(status); }
 
 std::string read_all(int descriptor)
 {
@@ -37,65 +34,35 @@ std::string read_all(int descriptor)
   }
 }
 
-}  // namespace
-
-ChildProcess::ChildProcess(std::vector<std::string> words, int output)
+/// Starts a program whose output goes to a descriptor.
+pid_t start(std::vector<std::string>& words, int output)
 {
   std::vector<char*> argv;
   for (std::string& word : words)
     argv.push_back(word.data());
   argv.push_back(nullptr);
-  id_ = ::fork();
-  if (id_ == 0) {  // only calls that are safe after fork in a program with threads
+  const pid_t id = ::fork();
+  if (id == 0) {  // only calls that are safe after fork in a program with threads
     ::dup2(output, STDOUT_FILENO);
     ::dup2(output, STDERR_FILENO);
     ::execvp(argv.front(), argv.data());
-    ::_exit(not_started);
+    ::_exit(Ending::not_started);
   }
-  if (id_ < 0)
+  if (id < 0)
     throw EnvironmentError(fmt::format("cannot start {}: {}", words.front(), std::strerror(errno)));
+  return id;
 }
 
-ChildProcess::~ChildProcess()
-{
-  if (id_ > 0 && !code_) {
-    ask_to_end();
-    wait();
-  }
-}
-
-ChildProcess::ChildProcess(ChildProcess&& other) noexcept : id_(std::exchange(other.id_, -1)), code_(other.code_) {}
-
-ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept
-{
-  std::swap(id_, other.id_);
-  std::swap(code_, other.code_);
-  return *this;
-}
-
-int ChildProcess::wait()
+int wait_for(pid_t id)
 {
   int status = 0;
-  while (!code_)
-    if (::waitpid(id_, &status, 0) == id_)
-      code_ = code_of(status);
-    else if (errno != EINTR)
-      code_ = not_started;
-  return *code_;
+  while (::waitpid(id, &status, 0) != id)
+    if (errno != EINTR)
+      return Ending::not_started;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : Ending::of_signal + WTERMSIG(status);
 }
 
-std::optional<int> ChildProcess::ended()
-{
-  if (int status = 0; !code_ && ::waitpid(id_, &status, WNOHANG) == id_)
-    code_ = code_of(status);
-  return code_;
-}
-
-void ChildProcess::ask_to_end() const noexcept
-{
-  if (id_ > 0 && !code_)
-    ::kill(id_, SIGTERM);
-}
+}  // namespace
 
 Ending run_to_its_end(std::vector<std::string> words)
 {
@@ -103,12 +70,10 @@ Ending run_to_its_end(std::vector<std::string> words)
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     throw EnvironmentError(fmt::format("cannot start {}: {}", words.front(), std::strerror(errno)));
   FileDescriptor from(ends[0]), to(ends[1]);
-  ChildProcess child(std::move(words), to.number());
+  const pid_t child = start(words, to.number());
   to = {};  // closed, so that the end of the child's output can be seen
-  Ending ending{read_all(from.number()), 0};
-  from = {};
-  ending.code = child.wait();
-  return ending;
+  std::string output = read_all(from.number());
+  return {std::move(output), wait_for(child)};
 }
 
 bool on_path(const std::string& program)

@@ -14,14 +14,16 @@
     talus.calibrate("calibration.yaml", jobs=4).values        # parameters from observations
     talus.sweep("study.yaml", jobs=4).to_pandas()             # several values of keys, and a table of the results
     talus.factor_of_safety("slope.yaml").factor               # by strength reduction
+    talus.converge("slope.yaml").number("toe")["order"]       # with cells of several sizes
     talus.diff("runs/a", "runs/b", relative=1e-6).same        # field by field
     talus.drive({"law": "von_mises", ...}, test="uniaxial_strain_rate")
 
-The package is one folder that can be copied.  It needs numpy, h5py to read checkpoints, and lz4 to read particles and meshes
-(Debian: python3-numpy, python3-h5py, python3-lz4); pandas, xarray, matplotlib, PyVista, and for calibrations scipy, PyYAML and contourpy,
-are used where they are installed, and MissingPackage names them where they are not.  Units are SI; a pure number has the unit "-".  Symmetric tensors have six components,
-xx, yy, zz, xy, yz, xz (`tensors` makes matrices of them), others nine, by rows.  Vectors of particle and mesh files have three components
-in two dimensions too.  Only `run`, `resume`, `drive`, `calibrate`, `sweep` and `factor_of_safety` write files.
+The package is one folder that can be copied.  It needs numpy, h5py to read checkpoints, and lz4 to read particles and meshes (Debian:
+python3-numpy, python3-h5py, python3-lz4); pandas, xarray, matplotlib, PyVista, and for calibrations scipy, PyYAML and contourpy, are used
+where they are installed, and MissingPackage names them where they are not.  Units are SI; a pure number has the unit "-".  Symmetric
+tensors have six components, xx, yy, zz, xy, yz, xz (`tensors` makes matrices of them), others nine, by rows.  Vectors of particle and mesh
+files have three components in two dimensions too.  Only `run`, `resume`, `drive`, `calibrate`, `sweep`, `converge` and `factor_of_safety`
+write files.
 
 Errors in a file are FileErrors with its name: `Damaged`, or `UnknownFormat` for a file of another version.  A missing file is a
 FileNotFoundError; a missing field, column or body is a `Missing` error, which lists the existing ones.  An error of the program is a
@@ -38,6 +40,7 @@ from .calibration import Calibration, Estimate, calibrate
 from .checkpoints import Body, CHECKPOINT_FORMATS, Checkpoint
 from .comparison import Comparison, Difference, compare, tensors
 from .components import von_mises
+from .convergence import Convergence, converge
 from .convert import to_pandas
 from .differences import Differences, diff
 from .errors import (Damaged, EnvironmentFailure, FileError, Message, Missing, MissingPackage, ProgramError, RunFailed, SceneError,
@@ -57,8 +60,9 @@ from .tables import PURE, Table
 
 __version__ = "0.1.0"  # that of the program (CMakeLists.txt)
 
-__all__ = ["Body", "CHECKPOINT_FORMATS", "Calibration", "Checkpoint", "Comparison", "Damaged", "Difference", "Differences",
+__all__ = ["Body", "CHECKPOINT_FORMATS", "Calibration", "Checkpoint", "Comparison", "Convergence", "Damaged", "Difference", "Differences",
            "EnvironmentFailure", "Estimate", "FactorOfSafety", "FileError", "Maps", "MaterialTest", "Mesh", "Message", "Missing",
-           "MissingPackage", "PURE", "Particles", "Progress", "ProgramError", "Raster", "Run", "RunFailed", "SceneError", "Series",
-           "StoppedRuns", "Sweep", "TESTS", "Table", "UnknownFormat", "calibrate", "check", "compare", "diff", "drive", "factor_of_safety",
-           "facts", "find_program", "manual", "open", "resume", "run", "schema", "sweep", "tensors", "to_pandas", "to_yaml", "von_mises"]
+           "MissingPackage", "PURE", "Particles", "ProgramError", "Progress", "Raster", "Run", "RunFailed", "SceneError", "Series",
+           "StoppedRuns", "Sweep", "TESTS", "Table", "UnknownFormat", "calibrate", "check", "compare", "converge", "diff", "drive",
+           "factor_of_safety", "facts", "find_program", "manual", "open", "resume", "run", "schema", "sweep", "tensors", "to_pandas",
+           "to_yaml", "von_mises"]

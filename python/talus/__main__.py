@@ -1,4 +1,4 @@
-"""The commands of the package, such as python3 -m talus calibrate SPECIFICATION.  The program calls them for its commands of these names."""
+"""The commands of the package, such as python3 -m talus calibrate SPECIFICATION; the program calls them for its own."""
 from __future__ import annotations
 
 import argparse
@@ -10,6 +10,7 @@ from typing import Any
 
 from .calibration import calibrate, default_folder
 from .calibration.evaluation import Stopped
+from .convergence.command import add_converge
 from .differences.command import add_diff
 from .errors import EnvironmentFailure, FileError, MissingPackage, ProgramError, RunFailed, SceneError
 from .program import STOPPED
@@ -53,6 +54,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_calibrate(commands)
     add_sweep(commands, _count)
+    add_converge(commands)
     add_fos(commands)
     add_diff(commands)
     return parser

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -48,6 +48,11 @@ class Message(NamedTuple):
     text: str    #: what was found, and what would be right
     source: str  #: text of the line; empty if unknown
 
+    @property
+    def place(self) -> str:
+        """File, line and column, as far as they are known: "slope.yaml:3:7"."""
+        return ":".join([self.file, *(str(n) for n in (self.line, self.column) if n)] if self.file else [])
+
 
 class ProgramError(RuntimeError):
     """The program ended with an error; the text is what it said.
@@ -81,9 +86,22 @@ class EnvironmentFailure(ProgramError):
 
 
 def located(messages: Sequence[Message]) -> SceneError:
-    """The error of wrong input with these messages, as the program writes them."""
-    lines = []
-    for message in messages:
-        place = ":".join([message.file, *(str(n) for n in (message.line, message.column) if n)] if message.file else [])
-        lines.append(": ".join(part for part in (place, message.kind, message.key, message.text) if part))
-    return SceneError("\n".join(lines), 2, messages)
+    """The error of wrong input with these messages in the order of their places, as the program writes them."""
+    messages = sorted(messages, key=lambda message: (message.file, message.line, message.column))
+    count = len(messages)
+    return SceneError("\n".join([*map(_as_told, messages), f"{count} error{'s' if count > 1 else ''}, nothing was run."]), 2, messages)
+
+
+def _as_told(message: Message) -> str:
+    """An error with its place and key, the line, and a mark below the column."""
+    shown = f"\n{message.line:5} | {message.source}\n      | {' ' * (message.column - 1)}^" if message.source else ""
+    return ": ".join(part for part in (message.place, message.kind, message.key, message.text) if part) + shown
+
+
+def check_ranges(values: Mapping[str, tuple[float | None, float, float]], problems: Iterable[str] = ()) -> None:
+    """Raises SceneError with these problems of options and with each value that is outside its range {name: (value, low, high)}; None
+    stands for a default."""
+    wrong = [*problems, *(f"{name} {value:g} must be in [{low:g}, {high:g}]" for name, (value, low, high) in values.items()
+                          if value is not None and not low <= value <= high)]
+    if wrong:
+        raise SceneError("\n".join(f"error: {text}" for text in wrong), 2)

@@ -6,7 +6,9 @@ import os
 import re
 import shutil
 import subprocess
+import tempfile
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -93,6 +95,41 @@ def facts_of(scene: Path, changes: Sequence[str] = (), *, keys_only: bool = Fals
     """
     words = [word for change in changes for word in ("--set", change)]
     return json.loads(call(["check", str(scene), *words, "--json", *(["--keys"] if keys_only else [])], program))
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What the program finds in a scene with changes (io/output/variants_json.hpp).  What a check does not reach is empty, or 0.
+
+    fronts     columns of run-out in its history
+    cells      of its mesh
+    cell_size  (volume of the mesh / cells)^(1 / dimension) [m]
+    """
+
+    scene_digest: str
+    mesh_digest: str
+    fronts: list[str]
+    cells: int
+    cell_size: float
+    particles: int
+    errors: list[Message]
+
+
+def check_variants(scene: Path, variants: Sequence[tuple[Sequence[str], str]], depth: str, *, quick: bool,
+                   program: Path) -> tuple[str, list[Variant]]:
+    """Checks a scene with several sets of changes; returns the commit of the program, and what it found in each.
+
+    variants  changes such as "time.end=2", and the digest of a mesh with which the model is known to be in order, or an empty text
+    depth     "scenes", "meshes", or "models"
+    """
+    asked = {"check": depth, "quick": quick, "variants": [{"set": list(changes), "built_on": mesh} for changes, mesh in variants]}
+    with tempfile.NamedTemporaryFile("w", suffix=".json", prefix="talus_variants_", encoding="utf-8") as file:
+        json.dump(asked, file)
+        file.flush()
+        answer = json.loads(call(["check", str(scene), "--variants", file.name], program))
+    return answer["commit"], [Variant(one["scene_digest"], one["mesh_digest"], one["fronts"], one["cells"], one["cell_size [m]"],
+                                      one["particles"], [Message("error", **error) for error in one["errors"]])
+                              for one in answer["variants"]]
 
 
 def schema(program: str | os.PathLike[str] | None = None) -> dict[str, Any]:

@@ -27,6 +27,16 @@ def _written(path: Path, what: str) -> Path:
     return path
 
 
+def contents_of(path: Path, why_not: str) -> dict[str, Any]:
+    """The contents of a file of JSON.  Raises Damaged if it has others, and FileNotFoundError with a reason if it is not there."""
+    if not path.exists():
+        raise FileNotFoundError(f"{path} is not there: {why_not}")
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise Damaged(f"{path}: {error}") from error
+
+
 class Run:
     """A results folder.  For a run in progress, or a killed one, it shows the results so far.
 

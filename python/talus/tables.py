@@ -2,8 +2,11 @@
 from __future__ import annotations
 
 import csv
+import io
+import math
 import os
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +19,29 @@ if TYPE_CHECKING:
     import xarray
 
 PURE = "-"  # the unit of a pure number
+_FORMULA = re.compile(r"'*[=+\-@]")
+
+
+def cell(text: str) -> str:
+    """A text that spreadsheets do not run as a formula: as io/output/csv.cpp, which has an apostrophe before it."""
+    text = text.replace("\n", " ")
+    try:
+        float(text)
+    except ValueError:
+        return f"'{text}" if _FORMULA.match(text) else text
+    return text
+
+
+def number_text(value: float | None) -> str:
+    """The shortest text of a number that gives it back; a whole one without a point, as the program writes it.  None and nan are empty."""
+    return "" if value is None or math.isnan(value) else repr(float(value)).removesuffix(".0")
+
+
+def csv_text(rows: Iterable[Iterable[str]]) -> str:
+    """Rows of texts as .csv."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(map(cell, row) for row in rows)
+    return text.getvalue()
 
 
 def _as_text(entry: str) -> str:

@@ -25,7 +25,7 @@ from talus.sweeps.distributions import read_distribution, shares_of  # noqa: E40
 from talus.sweeps.findings import file_word, rank_correlation  # noqa: E402
 from talus.sweeps.maps import CaseMap, read_map, write_share  # noqa: E402
 from talus.sweeps.study import read_study  # noqa: E402
-from talus.sweeps.table import cell  # noqa: E402
+from talus.tables import cell  # noqa: E402
 from scratch import InAFolder  # noqa: E402
 
 SCENE = """\

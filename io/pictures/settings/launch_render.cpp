@@ -54,8 +54,8 @@ std::vector<std::string> command_line(const fs::path& talus_render, const std::v
 {
   if (code == refused)
     throw Error(messages);
-  if (code > ChildProcess::of_signal)
-    throw EnvironmentError(fmt::format("{} was ended by signal {}. {}\n{}", talus_render.string(), code - ChildProcess::of_signal,
+  if (code > Ending::of_signal)
+    throw EnvironmentError(fmt::format("{} was ended by signal {}. {}\n{}", talus_render.string(), code - Ending::of_signal,
                                        has_display()
                                            ? "DISPLAY is set; without it, xvfb-run draws in memory: try env -u DISPLAY talus render ..."
                                            : "Is software OpenGL there (Debian: libgl1-mesa-dri)?",

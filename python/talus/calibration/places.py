@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Message, SceneError
+from ..errors import Message, SceneError, located
 from ..packages import need
 
 _INTEGER = re.compile(r"[-+]?\d+")
@@ -37,20 +37,8 @@ class Problems:
 
     def raise_any(self) -> None:
         """Raises SceneError with all errors, in the order of their places; does nothing if there are none."""
-        if not self.messages:
-            return
-        self.messages.sort(key=lambda message: (message.line, message.column))
-        count = len(self.messages)
-        lines = [*map(_as_told, self.messages), f"{count} error{'s' if count > 1 else ''}, nothing was run."]
-        raise SceneError("\n".join(lines), 2, self.messages)
-
-
-def _as_told(message: Message) -> str:
-    """An error as the program prints it: place, key and text, the line, and a mark below the column."""
-    key = f"{message.key}: " if message.key else ""
-    shown = f"\n{message.line:5} | {message.source}\n      | {' ' * (message.column - 1)}^" if message.source else ""
-    place = ":".join(map(str, (message.file, *(number for number in (message.line, message.column) if number))))
-    return f"{place}: error: {key}{message.text}{shown}"
+        if self.messages:
+            raise located(self.messages)
 
 
 class Entry:
@@ -213,7 +201,7 @@ class Block:
 def meant(word: str, known: Sequence[str], otherwise: str = "") -> str:
     """What was probably meant by a wrong word; or the known words, or other text for these."""
     near = difflib.get_close_matches(word, known, 1)
-    return f' — did you mean "{near[0]}"?' if near else f"; known: {otherwise or ', '.join(known)}"
+    return f' — did you mean "{near[0]}"?' if near else f"; {otherwise or 'known: ' + ', '.join(known)}"
 
 
 def read_yaml(file: Path) -> Entry:

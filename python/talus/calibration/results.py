@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Damaged
+from ..runs import contents_of
 from ..scenes import flow, set_options
 from ..tables import Table
 from .evaluation import Evaluation, Record
@@ -40,13 +40,7 @@ class Calibration:
 
     def __init__(self, folder: Path) -> None:
         self.folder = Path(folder)
-        path = self.folder / "calibration.json"
-        if not path.exists():
-            raise FileNotFoundError(f"{path} is not there: the calibration did not end, or this is no folder of one")
-        try:
-            self.contents: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise Damaged(f"{path}: {error}") from error
+        self.contents = contents_of(self.folder / "calibration.json", "the calibration did not end, or this is no folder of one")
 
     @property
     def estimates(self) -> dict[str, Estimate]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..calibration.files import only_writer
-from ..errors import EnvironmentFailure, MissingPackage, ProgramError, SceneError
+from ..errors import EnvironmentFailure, MissingPackage, ProgramError, check_ranges
 from ..program import find_program
 from ..running import default_folder
 from ..scenes import Scene, set_options, write_scene
@@ -101,9 +101,6 @@ def _check(options: Options, jobs: int | None, threads: int | None) -> None:
         wrong.append(f"low (--from) {options.range.low:g} must be below high (--to) {options.range.high:g}")
     bounds = {"damping": (options.damping, 0, 0.9), "share": (options.share, 0, 1), "increments": (options.increments, 2, 1000),
               "jobs": (jobs, 1, 1024), "threads": (threads, 1, 1024)}
-    wrong += [f"{name} {value:g} must be in [{low}, {high}]" for name, (value, low, high) in bounds.items()
-              if value is not None and not low <= value <= high]
     if options.trials not in (None, RUN, STATIC):
         wrong.append(f"trials {options.trials!r} must be {RUN} or {STATIC}")
-    if wrong:
-        raise SceneError("\n".join(f"error: {text}" for text in wrong), 2)
+    check_ranges(bounds, wrong)

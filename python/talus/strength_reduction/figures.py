@@ -1,8 +1,6 @@
 """Pictures of a search for a factor of safety."""
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,8 +8,9 @@ from typing import Any
 from ..calibration.files import save_figure, write_whole
 from ..packages import need
 from ..program import call
+from ..tables import csv_text, number_text
 from .finding import Search
-from .plan import Plan, number
+from .plan import Plan
 from .search import FAILS, HOLDS, Trial
 
 _COLOURS = {HOLDS: "tab:blue", FAILS: "tab:red"}
@@ -22,11 +21,8 @@ def draw_search(search: Search, tell: Callable[[str], object]) -> None:
     Needs matplotlib.  Raises ProgramError if the program cannot draw."""
     plan = search.plan
     moved = [trial for trial in search.trials if trial.motion]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["factor", "displacement [m]", "growth [-]"])
-    writer.writerows([number(trial.factor), number(trial.motion.moved), number(trial.motion.growth)] for trial in moved if trial.motion)
-    write_whole(plan.folder / "fos_curve.csv", text.getvalue())
+    rows = [map(number_text, (trial.factor, trial.motion.moved, trial.motion.growth)) for trial in moved if trial.motion]
+    write_whole(plan.folder / "fos_curve.csv", csv_text([["factor", "displacement [m]", "growth [-]"], *rows]))
     tell(str(_draw(search, moved, "displacement [m]", "fos.png", lambda motion: motion.moved)))
     tell(str(_draw(search, moved, "growth [-]", "fos_growth.png", lambda motion: motion.growth)))
     failing = next((trial for trial in moved if trial.verdict == FAILS), None)
@@ -61,5 +57,5 @@ def _draw(search: Search, trials: list[Trial], label: str, name: str, measure: C
 
 def _draw_mechanism(plan: Plan, failing: Trial) -> Path:
     path = plan.folder / "mechanism.png"
-    call(["render", str(plan.folder / f"trial_{number(failing.factor)}"), "--out", str(path), "--field", plan.field], plan.program)
+    call(["render", str(plan.folder / f"trial_{number_text(failing.factor)}"), "--out", str(path), "--field", plan.field], plan.program)
     return path

@@ -1,8 +1,6 @@
 """The search for a factor of safety in its folder: runs, verdicts, files."""
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 from collections import deque
@@ -18,8 +16,8 @@ from ..errors import EnvironmentFailure, RunFailed
 from ..program import STOPPED as STOPPED_ON_REQUEST
 from ..run_states import DONE, FAILED, PlannedRun, state_of
 from ..runs import Run
-from ..tables import Table
-from .plan import RUN, STATIC, Plan, number
+from ..tables import Table, csv_text, number_text
+from .plan import RUN, STATIC, Plan
 from .search import FAILS, HOLDS, UNCLEAR, Bracket, Motion, Range, Trial, bracket_of, judge, motion_of, next_factors
 
 _LONGEST = 2         # a trial without a clear verdict is repeated, so many times as long
@@ -96,16 +94,14 @@ class Search:
 
     def write_files(self) -> None:
         """Writes fos.csv and fos.json."""
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(["factor", "verdict", "moved [m]", "growth", "kinetic_over_peak", "duration [s]", "by_growth_alone", "steadiness",
-                         "message"])
+        rows = [["factor", "verdict", "moved [m]", "growth", "kinetic_over_peak", "duration [s]", "by_growth_alone", "steadiness",
+                 "message"]]
         for trial in self.trials:
             motion = trial.motion
             measures = [motion.moved, motion.growth, motion.liveliness, motion.duration] if motion else [None] * 4
-            writer.writerow([number(trial.factor), trial.verdict, *map(_cell, measures), int(trial.by_growth_alone),
-                             _cell(motion.steadiness if motion else None), _as_cell(trial.message)])
-        write_whole(self.plan.folder / "fos.csv", text.getvalue())
+            rows.append([number_text(trial.factor), trial.verdict, *map(number_text, measures), str(int(trial.by_growth_alone)),
+                         number_text(motion.steadiness if motion else None), trial.message])
+        write_whole(self.plan.folder / "fos.csv", csv_text(rows))
         write_whole(self.plan.folder / "fos.json", json.dumps(self._contents(), indent=2, ensure_ascii=False) + "\n")
 
     def _contents(self) -> dict[str, Any]:
@@ -221,7 +217,7 @@ class Search:
             raise EnvironmentFailure(f"the trial of {one.factor:.6g} left no history to judge it by in {one.run.folder}", 3)
         longer = 2 * one.times
         unit = " s" if self.plan.kind == RUN else " increments"
-        length = number(longer * self.plan.duration)
+        length = number_text(longer * self.plan.duration)
         self.tell(f"{one.factor:.6g}: unclear, the measures contradict each other; begins anew, {length}{unit} long")
         return [_Try(one.factor, longer, self.plan.trial(one.factor, longer))]
 
@@ -237,13 +233,3 @@ def broken_off(path: Path) -> set[str]:
 
 def _second_of(motion: Motion) -> str:
     return f"{motion.liveliness:.2e}" if motion.liveliness is not None else f"{motion.steadiness or 0:.3g}"
-
-
-def _cell(value: float | None) -> str:
-    return "" if value is None else number(value)
-
-
-def _as_cell(text: str) -> str:
-    """A text on one line; one that a spreadsheet would take for a formula has an apostrophe before it."""
-    text = text.replace("\n", " ")
-    return f"'{text}" if text.lstrip("'")[:1] in ("=", "+", "-", "@") else text

@@ -11,6 +11,7 @@ from ..errors import Message, Missing, SceneError, located
 from ..program import facts_of
 from ..run_states import PlannedRun
 from ..scenes import flow
+from ..tables import number_text
 from .search import AtRest, Criterion, Range, usual_duration
 
 RUN, STATIC = "run", "static"
@@ -74,7 +75,7 @@ class Plan:
     def trial(self, factor: float, times_as_long: int) -> PlannedRun:
         """The run for a factor, with its duration multiplied.  Raises SceneError."""
         changes = (*self.of_state, *self._changes(factor, self.duration * times_as_long))
-        return PlannedRun(self.scene, changes, self.folder / f"trial_{number(factor)}", digest_of(self.scene, changes, self.program),
+        return PlannedRun(self.scene, changes, self.folder / f"trial_{number_text(factor)}", digest_of(self.scene, changes, self.program),
                           quick=self.at_rest.quick)
 
     def _changes(self, factor: float, duration: float) -> list[str]:
@@ -91,15 +92,10 @@ class Plan:
     def criterion_in_words(self) -> str:
         """What a trial is, and when it fails."""
         if self.kind == STATIC:
-            return (f"{number(self.duration)} equilibria each; fails: growth above {self.criterion.growth:g} and steadiness above "
-                    f"{self.criterion.steadiness:g}, or no equilibrium")
-        return (f"trials of {number(self.duration)} s, damping: {self.stage['damping']:g}; fails: growth above {self.criterion.growth:g} "
-                f"and kinetic energy above {self.criterion.liveliness:g} of its peak")
-
-
-def number(value: float) -> str:
-    """A number in names of folders and tables: shortest, without a decimal point where it is whole."""
-    return repr(float(value)).removesuffix(".0")
+            return (f"{number_text(self.duration)} equilibria each; fails: growth above {self.criterion.growth:g} and steadiness "
+                    f"above {self.criterion.steadiness:g}, or no equilibrium")
+        return (f"trials of {number_text(self.duration)} s, damping: {self.stage['damping']:g}; fails: growth above "
+                f"{self.criterion.growth:g} and kinetic energy above {self.criterion.liveliness:g} of its peak")
 
 
 def digest_of(scene: Path, changes: Sequence[str], program: Path) -> str:

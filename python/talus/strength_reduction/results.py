@@ -1,13 +1,10 @@
 """Results of a search for a factor of safety."""
 from __future__ import annotations
 
-import json
 import os
 from pathlib import Path
-from typing import Any
 
-from ..errors import Damaged
-from ..runs import Run
+from ..runs import Run, contents_of
 from ..tables import Table
 
 
@@ -20,13 +17,7 @@ class FactorOfSafety:
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
-        path = self.folder / "fos.json"
-        if not path.exists():
-            raise FileNotFoundError(f"{path} is not there: no trial has been judged, or this is no folder of a search")
-        try:
-            self.contents: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise Damaged(f"{path}: {error}") from error
+        self.contents = contents_of(self.folder / "fos.json", "no trial has been judged, or this is no folder of a search")
 
     @property
     def factor(self) -> float | None:

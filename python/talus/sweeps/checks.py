@@ -1,16 +1,13 @@
 """The cases of a sweep, checked by the program before anything runs: errors of all of them, at the values that cause them."""
 from __future__ import annotations
 
-import json
 import re
-import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from ..errors import Message
-from ..program import call
+from ..program import Variant, check_variants
 from ..run_states import DONE, PlannedRun, state_of
 from .study import Study
 
@@ -39,8 +36,8 @@ def plan_sweep(study: Study, folder: Path, *, quick: bool, program: Path) -> Pla
     plan = Plan(study, folder, quick, program)
     plan.cases = [PlannedRun(study.scene, study.changes(i), folder / f"case_{i + 1:04}", quick=quick) for i in range(len(study.cases))]
     for case, found in zip(plan.cases, _ask(plan, plan.cases, None)):
-        case.scene_digest = found["scene_digest"]
-        plan.fronts += [name for name in found["fronts"] if name not in plan.fronts]
+        case.scene_digest = found.scene_digest
+        plan.fronts += [name for name in found.fronts if name not in plan.fronts]
     return plan
 
 
@@ -52,37 +49,32 @@ def check_cases(plan: Plan, chosen: Sequence[int], *, models: bool = True) -> No
     """
     cases = [plan.cases[i] for i in chosen]
     for case, found in zip(cases, _ask(plan, cases, models)):
-        case.mesh_digest = found["mesh_digest"]
+        case.mesh_digest = found.mesh_digest
 
 
-def _ask(plan: Plan, cases: Sequence[PlannedRun], models: bool | None) -> list[dict[str, Any]]:
-    """What the program finds in cases (io/output/variants_json.hpp): in their scenes, and unless `models` is None in their meshes too.  The
-    model of a case that is done or goes on was checked when it began."""
-    depth = {None: "scenes", False: "meshes", True: "models"}[models]
-    variants = []
+def _ask(plan: Plan, cases: Sequence[PlannedRun], models: bool | None) -> list[Variant]:
+    """What the program finds in cases: in their scenes, and unless `models` is None in their meshes too.  The model of a case that is done
+    or goes on was checked when it began."""
     if not cases:
         return []
+    variants = []
     for case in cases:
         state = state_of(case) if models else None
         is_checked = state is not None and (state.state == DONE or state.goes_on_from is not None)
-        variants.append({"set": case.changes, "built_on": state.mesh_digest if state is not None and is_checked else ""})
-    with tempfile.NamedTemporaryFile("w", suffix=".json", prefix="talus_cases_", encoding="utf-8") as file:
-        json.dump({"check": depth, "quick": plan.quick, "variants": variants}, file)
-        file.flush()
-        answer = json.loads(call(["check", str(plan.study.scene), "--variants", file.name], plan.program))
-    plan.commit = answer["commit"]
-    _raise_errors(plan, cases, [variant["errors"] for variant in answer["variants"]])
-    return answer["variants"]
+        variants.append((case.changes, state.mesh_digest if state is not None and is_checked else ""))
+    depth = {None: "scenes", False: "meshes", True: "models"}[models]
+    plan.commit, found = check_variants(plan.study.scene, variants, depth, quick=plan.quick, program=plan.program)
+    _raise_errors(plan, cases, found)
+    return found
 
 
-def _raise_errors(plan: Plan, cases: Sequence[PlannedRun], errors: Sequence[Sequence[dict[str, Any]]]) -> None:
+def _raise_errors(plan: Plan, cases: Sequence[PlannedRun], variants: Sequence[Variant]) -> None:
     """Raises SceneError if there are errors, each once: at the value in the study that causes it, or in the scene with the first affected
     case unless all are affected."""
     found: dict[Message, list[PlannedRun]] = {}
     of_value: set[Message] = set()
-    for case, messages in zip(cases, errors):
-        for one in messages:
-            message = Message("error", one["file"], one["line"], one["column"], one["key"], one["text"], one["source"])
+    for case, variant in zip(cases, variants):
+        for message in variant.errors:
             changes = [k for k, change in enumerate(case.changes) if message.file == f"--set {change}"]
             if changes:
                 message = _at_value(plan, case, changes[0], message)

@@ -50,7 +50,7 @@ def read_distribution(entry: Entry) -> Distribution | None:
         if not isinstance(law, stats.rv_continuous):
             known = [*_FRIENDLY, *(word for word in dir(stats) if isinstance(getattr(stats, word), stats.rv_continuous))]
             assert named is not None
-            named.wrong(f'unknown distribution "{name}"{meant(name, known, "those of scipy.stats that are continuous")}')
+            named.wrong(f'unknown distribution "{name}"{meant(name, known, "known: those of scipy.stats that are continuous")}')
             return None
         shapes = tuple((law.shapes or "").replace(",", " ").split())
         numbers = {word: _number(block, word) for word in (*shapes, "loc", "scale", "low", "high")}

@@ -1,8 +1,6 @@
 """Statistics over the cases of a sweep: influence of keys, probability of exceedance, and maps of it."""
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -15,10 +13,11 @@ from ..calibration.files import write_whole
 from ..errors import FileError, MissingPackage
 from ..packages import need
 from ..run_states import DONE
+from ..tables import csv_text, number_text
 from .checks import Plan
 from .maps import CaseMap, read_map, write_share
 from .study import SAMPLED, Exceed
-from .table import SweepTable, cell, number_text
+from .table import SweepTable
 
 
 def rank_correlation(a: np.ndarray, b: np.ndarray) -> float:
@@ -57,10 +56,8 @@ class Findings:
             self._exceedance_map(exceed)
 
     def _write(self, name: str, rows: Sequence[Sequence[str]]) -> Path:
-        text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows([[cell(word) for word in row] for row in rows])
         path = self.plan.folder / name
-        write_whole(path, text.getvalue())
+        write_whole(path, csv_text(rows))
         self.text.append(str(path))
         return path
 
@@ -91,7 +88,7 @@ class Findings:
             numbers, values = self._sample(k)
             found = [rank_correlation(column, numbers) for column in values.T]
             matrix.append(found)
-            rows.append([heading, *("" if np.isnan(r) else number_text(r) for r in found), str(len(numbers))])
+            rows.append([heading, *map(number_text, found), str(len(numbers))])
             told = [("-" if np.isnan(r) else f"{r:+.2f}").rjust(len(key)) for r, key in zip(found, keys)]
             self.text.append("  ".join([heading.ljust(width), *told, f"{len(numbers):>5}"]))
         path = self._write("correlation.csv", rows)

@@ -42,7 +42,8 @@ TEST_F(CheckVariants, HaveTheDigestsOfTheRuns)
   const std::string summary = read("run/summary.json");
   for (const char* key : {"scene_digest", "mesh_digest"})
     EXPECT_THAT(summary, HasSubstr(behind(outcome.out, key)));
-  EXPECT_THAT(outcome.out, HasSubstr(R"("fronts":["toe"],"errors":[])"));
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr(R"("fronts":["toe"],"cells":128,"cell_size [m]":0.1767766)"),
+                                          HasSubstr(R"("particles":96,"errors":[])")));
 }
 
 TEST_F(CheckVariants, SayWhatIsWrongWithEach)
