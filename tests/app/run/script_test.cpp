@@ -173,7 +173,7 @@ def step(simulation):
   EXPECT_EQ(first(table, "kinetic"), 0);
   const Real mass = first(table, "mass");
   const std::span<const Real> momentum = *table["momentum_x"];
-  EXPECT_NEAR(*std::ranges::max_element(momentum), mass, 0.2 * mass);  // the wall takes some until the next row
+  EXPECT_NEAR(*std::ranges::max_element(momentum), mass, 0.3 * mass);  // the fixed base takes some until the next row
   EXPECT_NEAR(last(table, "load_work"), 0.5 * mass, 0.1 * mass);
   EXPECT_LT(std::abs(last(table, "energy_defect")), 0.01 * 0.5 * mass);
 }
