@@ -26,7 +26,8 @@ def works(built: Built) -> None:
         assert file.units["speed"] == "m/s" and file["speed"].max() > 0
     assert "length of the velocity" in built.run("manual", "speed")
     outputs_of = json.loads(built.run("manual", "--schema"))["properties"]["outputs"]["properties"]
-    assert all("speed" in outputs_of[block]["properties"]["fields"]["items"]["enum"] for block in ("particles", "mesh"))
+    items = [outputs_of[block]["properties"]["fields"]["items"] for block in ("particles", "mesh")]
+    assert all("speed" in (words["anyOf"][0] if "anyOf" in words else words)["enum"] for words in items)
     built.write("misspelt.yaml", BLOCK + outputs.replace("[speed", "[sped"))
     told = built.run("check", "misspelt.yaml", code=2)
     assert 'misspelt.yaml:10:37: error: outputs.particles.fields[0]: there is no field "sped" — did you mean "speed"?' in told, told

@@ -221,7 +221,9 @@ std::string scene_schema()
   kernel["markdownEnumDescriptions"] = Json::array();
   for_each_type(Kernels<2>{}, [&]<class K>() { kernel["markdownEnumDescriptions"].push_back(K::summary); });
   Json& outputs = keys["outputs"]["properties"];
-  outputs["particles"]["properties"]["fields"]["items"] = items_of(particle_field_words());
+  // Laws of the user have history variables of any name.
+  outputs["particles"]["properties"]["fields"]["items"] = {
+      {"anyOf", {items_of(particle_field_words()), {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}}}};
   outputs["mesh"]["properties"]["fields"]["items"] = items_of(words_of_table(node_fields()));
   return schema.dump(2) + "\n";
 }
