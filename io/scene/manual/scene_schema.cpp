@@ -222,8 +222,13 @@ std::string scene_schema()
   for_each_type(Kernels<2>{}, [&]<class K>() { kernel["markdownEnumDescriptions"].push_back(K::summary); });
   Json& outputs = keys["outputs"]["properties"];
   // Laws of the user have history variables of any name.
+  Json of_user{{"properties", {{"law", {{"enum", {LawBySymbol::name, UmatLaw::name}}}}}}, {"required", {"law"}}};
+  schema["if"] = {{"properties", {{"materials", {{"contains", std::move(of_user)}}}}}, {"required", {"materials"}}};
+  const Json known = items_of(particle_field_words());
   outputs["particles"]["properties"]["fields"]["items"] = {
-      {"anyOf", {items_of(particle_field_words()), {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}}}};
+      {"anyOf", {known, {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}}}};
+  Json& strict = schema["else"]["properties"]["outputs"]["properties"]["particles"]["properties"]["fields"]["items"];
+  strict["enum"] = known.at("enum");
   outputs["mesh"]["properties"]["fields"]["items"] = items_of(words_of_table(node_fields()));
   return schema.dump(2) + "\n";
 }
