@@ -200,12 +200,20 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   [[gnu::flatten]] void update_pack(const Material& material, const StressStrip<D>& strip, std::size_t i,
                                     detail::StressLanes& sums) const noexcept
   {
-    detail::StressPack<D> particles(material, strip, i);
-    StateLanes<State> states{strip.history.first + i, strip.history.stride, particles.count};
-    const SimdReal speed_of_waves = wave_speed(particles.F, states);
-    particles.find_pressures(material, strip, speed_of_waves);
-    const Mat3Of<SimdReal> after = update({particles.F, particles.L, particles.stress, strip.dt, particles.q, strip.elastic}, states);
-    particles.take(after, material, strip, diffusivity(), speed_of_waves, sums);
+    const MatOf<D> rate = strip.L.load(i);
+    const SimdReal volume_before = strip.volume.load(i), shrinking = max(-SimdReal(rate.trace()), 0);
+    Mat3Of<SimdReal> F, velocity_gradient = embed(rate);
+    const SimdReal J = detail::deform(strip, i, rate, F);
+    const Sym3Of<SimdReal> stored = strip.stress.load(i);
+    Mat3Of<SimdReal> stress = unpack(stored);
+    if (material.averages_volume)
+      detail::average_volume(strip, i, J, F, velocity_gradient);
+    StateLanes<State> states{strip.history.first + i, strip.history.stride, detail::lanes_of(strip, i)};
+    const SimdReal speed_of_waves = wave_speed(F, states);
+    const detail::StepPressures pressures = detail::find_pressures(material, strip, i, shrinking, speed_of_waves, stress);
+    const Mat3Of<SimdReal> after = update({F, velocity_gradient, stress, strip.dt, pressures.viscous, strip.elastic}, states);
+    detail::take_answer<D>(after, material, strip, i, {rate, stored, J, volume_before, shrinking, speed_of_waves, pressures}, diffusivity(),
+                           sums);
   }
 
   L law_;

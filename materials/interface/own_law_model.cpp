@@ -216,15 +216,29 @@ StressSums OwnLaw::update_strip(const Material& material, const StressStrip<D>& 
 {
   OwnLawBlock& arrays = block_of_thread();
   arrays.open(std::max(strip.history.stride, static_cast<std::size_t>(padded(static_cast<int>(strip.n)))), takes_strain());
-  static thread_local std::vector<detail::StressPack<D>> packs;
+  struct Pack {
+    MatOf<D> rate;
+    Sym3Of<SimdReal> stored;
+    SimdReal J, volume_before, shrinking, stretched;  // the last: det F as the law sees it
+    detail::StepPressures pressures;
+  };
+  static thread_local std::vector<Pack> packs;  // in their order
   packs.clear();
   for (std::size_t i = 0; i < strip.n; i += pack_size) {
     Mat3Of<SimdReal> before = strip.F.load(i);
     if (material.averages_volume)
       before = detail::scaled_in_plane<D>(before, strip.volume_ratio.load(i));
-    auto& particles = packs.emplace_back(material, strip, i);
-    particles.find_pressures(material, strip, sqrt(SimdReal(confined_ * particles.F.determinant() / density_)));
-    arrays.set_step(i, {before, particles.F, particles.L, particles.stress, strip.dt}, strip.history, code_->turning());
+    Pack& found = packs.emplace_back();
+    found.rate = strip.L.load(i), found.stored = strip.stress.load(i), found.volume_before = strip.volume.load(i);
+    found.shrinking = max(-SimdReal(found.rate.trace()), 0);
+    Mat3Of<SimdReal> F, L = embed(found.rate), stress = unpack(found.stored);
+    found.J = detail::deform(strip, i, found.rate, F);
+    if (material.averages_volume)
+      detail::average_volume(strip, i, found.J, F, L);
+    found.stretched = F.determinant();
+    const SimdReal speed = sqrt(SimdReal(confined_ * found.stretched / density_));
+    found.pressures = detail::find_pressures(material, strip, i, found.shrinking, speed, stress);
+    arrays.set_step(i, {before, F, L, stress, strip.dt}, strip.history, code_->turning());
   }
   for (std::size_t i = 0; i < strip.n; ++i) {
     arrays.id()[i] = strip.id[i];
@@ -238,20 +252,24 @@ StressSums OwnLaw::update_strip(const Material& material, const StressStrip<D>& 
   block.dimension = D, block.elastic = strip.elastic ? 1 : 0, block.time = strip.time, block.dt = strip.dt;
   call(block, arrays);
   detail::StressLanes lanes;
-  for (detail::StressPack<D>& particles : packs) {
-    const std::size_t i = particles.i;
+  for (std::size_t k = 0; k < packs.size(); ++k) {
+    const std::size_t i = k * pack_size;
+    const Pack& found = packs[k];
     const SimdReal modulus = arrays.bulk().load(i) + (4.0 / 3) * arrays.shear().load(i);
     const auto bounds_step = modulus > 0 && isfinite(modulus);
     if (!all_of(bounds_step))
-      for (int lane = 0; lane < particles.count; ++lane)
+      for (int lane = 0; lane < detail::lanes_of(strip, i); ++lane)
         if (!bounds_step[lane])
           complaints_.add(
               strip.time, strip.id[i + static_cast<std::size_t>(lane)],
               fmt::format("it gave the modulus of uniaxial strain {:.6g} Pa (bulk + 4/3 shear), from which no time step follows",
                           modulus[lane]));
     Sym3Of<SimdReal> stress = arrays.stress().load(i);
-    stress[0] = where(particles.good && bounds_step, stress[0], std::numeric_limits<Real>::quiet_NaN());
-    particles.take(unpack(stress), material, strip, diffusivity(), sqrt(SimdReal(modulus * particles.F.determinant() / density_)), lanes);
+    stress[0] = where(found.J > 0 && bounds_step, stress[0], std::numeric_limits<Real>::quiet_NaN());
+    const SimdReal speed = sqrt(SimdReal(modulus * found.stretched / density_));
+    detail::take_answer<D>(unpack(stress), material, strip, i,
+                           {found.rate, found.stored, found.J, found.volume_before, found.shrinking, speed, found.pressures}, diffusivity(),
+                           lanes);
   }
   return lanes.total();
 }

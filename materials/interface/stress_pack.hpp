@@ -40,94 +40,115 @@ SimdReal stress_power(const Sym3Of<SimdReal>& a, const MatOf<D>& L) noexcept
   return power;
 }
 
-/// Particles i to i + 3 of a strip, or those up to its end, while their stress is updated.  F, L and stress are those that the law sees: see
-/// update_stress() of material.hpp.
+/// Reports the particle in a lane of the pack that begins at i.
 template <int D>
-struct StressPack {
-  std::size_t i;
-  int count;  ///< particles; lanes beyond repeat the last one
-  Mat3Of<SimdReal> F, L, stress;
-  SimdReal q = 0, u = 0;  ///< artificial and pore pressure of the step
-  SimdReal J, volume_before, volume, shrinking, h;
-  MatOf<D> rate;
-  Sym3Of<SimdReal> stored;  ///< stress before the step
-  MaskOf<SimdReal> good;    ///< not inverted
+[[gnu::always_inline]] inline void report(const StressStrip<D>& strip, std::size_t i, int lane, Trouble trouble) noexcept
+{
+  strip.errors->report(strip.id[i + static_cast<std::size_t>(lane)], trouble);
+}
 
-  /// Deforms the particles.
-  [[gnu::always_inline]] StressPack(const Material& material, const StressStrip<D>& strip, std::size_t first) noexcept
-      : i(first), count(static_cast<int>(std::min<std::size_t>(pack_size, strip.n - first))), rate(strip.L.load(first))
-  {
-    const Real dt = strip.dt;
-    const Mat3Of<SimdReal> velocity_gradient = embed(rate);
-    F = strip.F.load(i);
-    F.template topLeftCorner<D, D>() += SimdReal(dt) * (rate * F.template topLeftCorner<D, D>());
-    strip.F.store(i, F);
-    J = F.determinant();
-    good = J > 0;  // false for NaN
-    if (!all_of(good))
-      for (int lane = 0; lane < count; ++lane)
-        if (!good[lane])
-          report(strip, lane, std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
-    volume_before = strip.volume.load(i), volume = J * strip.volume0.load(i);
-    strip.volume.store(i, volume);
-    shrinking = max(-SimdReal(rate.trace()), 0);
-    h = strip.altitude.load(i);
-    stored = strip.stress.load(i);
-    L = velocity_gradient, stress = unpack(stored);
-    if (material.averages_volume) {
-      const SimdReal to_average = strip.averaged.load(i) / J, ratio = D == 2 ? sqrt(to_average) : pow(to_average, Real{1} / D);
-      const SimdReal s = ratio / strip.volume_ratio.load(i);
-      strip.volume_ratio.store(i, ratio);
-      F = scaled_in_plane<D>(F, ratio);
-      L = scaled_in_plane<D>(velocity_gradient, s);
-      for (int d = 0; d < D; ++d)
-        L(d, d) += (s - 1) / dt;
-    }
-  }
+/// Particles of the pack that begins at i; lanes beyond repeat the last one.
+template <int D>
+int lanes_of(const StressStrip<D>& strip, std::size_t i) noexcept
+{
+  return static_cast<int>(std::min<std::size_t>(pack_size, strip.n - i));
+}
 
-  /// Takes the pressures of the last step from the stress, and finds those of this one.
-  [[gnu::always_inline]] void find_pressures(const Material& material, const StressStrip<D>& strip, const SimdReal& speed_of_waves) noexcept
-  {
-    if (material.viscosity) {
-      stress.diagonal().array() += strip.viscous.load(i);
-      q = strip.mass.load(i) / volume * h * shrinking *
-          (material.viscosity->quadratic * h * shrinking + material.viscosity->linear * speed_of_waves);
-      strip.viscous.store(i, q);
-    }
-    if (strip.pore_after) {
-      stress.diagonal().array() += strip.pore.load(i);
-      u = strip.pore_after.load(i);
-      strip.pore.store(i, u);
-    }
-  }
+// The parts of a stress update, of particles i to i + 3 of a strip or those up to its end.  They are functions of local variables, all inlined: as
+// members of one object the same numbers were kept in memory, and the update took 15 % longer.
 
-  /// Stores the answer of the law and reports.
-  [[gnu::always_inline]] void take(Mat3Of<SimdReal> after, const Material& material, const StressStrip<D>& strip,
-                                   const std::optional<Real>& diffusivity, const SimdReal& speed_of_waves, StressLanes& sums) const noexcept
-  {
-    after.diagonal().array() -= q + u;
-    const Sym3Of<SimdReal> new_stress = talus::pack(after);
-    const auto answered = isfinite(SimdReal(new_stress.sum()));
-    if (!all_of(answered))
-      for (int lane = 0; lane < count; ++lane)
-        if (good[lane] && !answered[lane])
-          report(strip, lane, Trouble::no_answer);
-    strip.stress.store(i, new_stress);
+/// Deforms particles i to i + 3 of a strip, or those up to its end: F by `rate`, and the volume.  Returns det F; not above 0 where it reports.
+template <int D>
+[[gnu::always_inline]] inline SimdReal deform(const StressStrip<D>& strip, std::size_t i, const MatOf<D>& rate,
+                                              Mat3Of<SimdReal>& F) noexcept
+{
+  F = strip.F.load(i);
+  F.template topLeftCorner<D, D>() += SimdReal(strip.dt) * (rate * F.template topLeftCorner<D, D>());
+  strip.F.store(i, F);
+  const SimdReal J = F.determinant();
+  const auto good = J > 0;  // false for NaN
+  if (!all_of(good))
+    for (int lane = 0; lane < lanes_of(strip, i); ++lane)
+      if (!good[lane])
+        report(strip, i, lane, std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
+  strip.volume.store(i, J * strip.volume0.load(i));
+  return J;
+}
 
-    const SimdReal work = 0.5 * strip.dt * (volume_before * stress_power<D>(stored, rate) + volume * stress_power<D>(new_stress, rate));
-    const SimdReal speed = sqrt(SimdReal(strip.v.load(i).squaredNorm()));
-    const SimdReal crossing = crossing_time<D>(diffusivity, material.viscosity, h, speed, speed_of_waves, shrinking);
-    const auto sound = good && answered, counts = sound && SimdReal(Pack{0, 1, 2, 3}) < static_cast<Real>(count);
-    sums.work += where(counts, work, 0);  // lanes beyond the last particle
-    sums.crossing = where(counts, min(sums.crossing, crossing), sums.crossing);
-    sums.speed = where(counts, max(sums.speed, speed), sums.speed);
-  }
+/// F and L as the law sees them, where bodies average their volume: see update_stress() of material.hpp.
+template <int D>
+[[gnu::always_inline]] inline void average_volume(const StressStrip<D>& strip, std::size_t i, const SimdReal& J, Mat3Of<SimdReal>& F,
+                                                  Mat3Of<SimdReal>& L) noexcept
+{
+  const SimdReal to_average = strip.averaged.load(i) / J, ratio = D == 2 ? sqrt(to_average) : pow(to_average, Real{1} / D);
+  const SimdReal s = ratio / strip.volume_ratio.load(i);
+  strip.volume_ratio.store(i, ratio);
+  F = scaled_in_plane<D>(F, ratio);
+  L = scaled_in_plane<D>(L, s);
+  for (int d = 0; d < D; ++d)
+    L(d, d) += (s - 1) / strip.dt;
+}
 
- private:
-  [[gnu::always_inline]] void report(const StressStrip<D>& strip, int lane, Trouble trouble) const noexcept
-  {
-    strip.errors->report(strip.id[i + static_cast<std::size_t>(lane)], trouble);
-  }
+/// Artificial and pore pressures of a step.
+struct StepPressures {
+  SimdReal viscous = 0, pore = 0;
 };
+/// Takes those of the last step from `stress`, and returns those of this one.
+template <int D>
+[[gnu::always_inline]] inline StepPressures find_pressures(const Material& material, const StressStrip<D>& strip, std::size_t i,
+                                                           const SimdReal& shrinking, const SimdReal& speed_of_waves,
+                                                           Mat3Of<SimdReal>& stress) noexcept
+{
+  StepPressures pressures;
+  if (material.viscosity) {
+    stress.diagonal().array() += strip.viscous.load(i);
+    const SimdReal h = strip.altitude.load(i);
+    pressures.viscous = strip.mass.load(i) / strip.volume.load(i) * h * shrinking *
+                        (material.viscosity->quadratic * h * shrinking + material.viscosity->linear * speed_of_waves);
+    strip.viscous.store(i, pressures.viscous);
+  }
+  if (strip.pore_after) {
+    stress.diagonal().array() += strip.pore.load(i);
+    pressures.pore = strip.pore_after.load(i);
+    strip.pore.store(i, pressures.pore);
+  }
+  return pressures;
+}
+
+/// What a step has found before the law answers.
+template <int D>
+struct DeformedPack {
+  const MatOf<D>& rate;
+  const Sym3Of<SimdReal>& stored;  ///< stress before the step
+  const SimdReal &J, &volume_before, &shrinking, &speed_of_waves;
+  const StepPressures& pressures;
+};
+
+/// Stores the answer of the law and reports.
+template <int D>
+[[gnu::always_inline]] inline void take_answer(Mat3Of<SimdReal> after, const Material& material, const StressStrip<D>& strip, std::size_t i,
+                                               const DeformedPack<D>& found, const std::optional<Real>& diffusivity,
+                                               StressLanes& sums) noexcept
+{
+  after.diagonal().array() -= found.pressures.viscous + found.pressures.pore;
+  const Sym3Of<SimdReal> stress = talus::pack(after);
+  const auto good = found.J > 0, answered = isfinite(SimdReal(stress.sum()));
+  if (!all_of(answered))
+    for (int lane = 0; lane < lanes_of(strip, i); ++lane)
+      if (good[lane] && !answered[lane])
+        report(strip, i, lane, Trouble::no_answer);
+  strip.stress.store(i, stress);
+
+  const SimdReal work =
+      0.5 * strip.dt *
+      (found.volume_before * stress_power<D>(found.stored, found.rate) + strip.volume.load(i) * stress_power<D>(stress, found.rate));
+  const SimdReal speed = sqrt(SimdReal(strip.v.load(i).squaredNorm()));
+  const SimdReal crossing =
+      crossing_time<D>(diffusivity, material.viscosity, strip.altitude.load(i), speed, found.speed_of_waves, found.shrinking);
+  const auto sound = good && answered, counts = sound && SimdReal(Pack{0, 1, 2, 3}) < static_cast<Real>(lanes_of(strip, i));
+  sums.work += where(counts, work, 0);  // lanes beyond the last particle
+  sums.crossing = where(counts, min(sums.crossing, crossing), sums.crossing);
+  sums.speed = where(counts, max(sums.speed, speed), sums.speed);
+}
 
 }  // namespace talus::detail
