@@ -8,6 +8,7 @@
 #include "app/script/script_arrays.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/stop_watch.hpp"
+#include "io/system/memory.hpp"
 #include "io/system/traps.hpp"
 
 namespace talus {
@@ -158,6 +159,7 @@ ScriptOfRun<D>::ScriptOfRun(const Scene& scene, std::filesystem::path folder) : 
   if (!script_->columns().empty() && !scene.outputs.history)
     throw SceneErrors(where_, "the script adds columns to history.csv, which the scene does not write: outputs.history is missing");
   host_ = std::make_unique<Host>(std::move(folder));
+  keep_freed_memory();  // of the columns that are copied for each call
 }
 
 template <int D>

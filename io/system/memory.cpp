@@ -2,6 +2,7 @@
 #include "io/system/memory.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -90,6 +91,13 @@ Real available_memory(const fs::path& root)
 
 /// Not by getrusage, whose value starts with the size of the parent process.
 Real peak_memory(const fs::path& root) { return number_in(root / "proc/self/status", "VmHWM:").value_or(0) * 1024; }
+
+void keep_freed_memory() noexcept
+{
+  constexpr int no_limit = std::numeric_limits<int>::max(), largest_of_heap = 32 << 20;  // the most that glibc accepts
+  ::mallopt(M_TRIM_THRESHOLD, no_limit);
+  ::mallopt(M_MMAP_THRESHOLD, largest_of_heap);
+}
 
 std::string too_many(Real items, const std::string& what, Real bytes)
 {
