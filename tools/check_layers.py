@@ -40,6 +40,7 @@ THIRD_PARTY = [
     ("Eigen/*", ["*"]),
     ("fmt/*", ["*"]),
     ("omp.h", ["core/parallel/threads.hpp"]),
+    ("malloc.h", ["io/system/memory.cpp"]),
     ("mpi.h", ["core/parallel/mpi_calls.hpp"]),
     ("immintrin.h", ["core/simd.hpp"]),
     ("metis.h", ["mesh/partition.cpp"]),

@@ -33,14 +33,14 @@ struct RowRange {
 };
 
 template <class Value>
-ScriptArray rows_of(const ParticleColumn<Value>& column, RowRange rows)
+ScriptArray seen_rows(const ParticleColumn<Value>& column, RowRange rows)
 {
   ScriptArray array{'d', column.row_at(rows.begin), {rows.size()}, {ParticleColumn<Value>::components * real_bytes}};
   Layout<Value>::add(array);
   return array;
 }
 template <class Number>
-ScriptArray rows_of(const std::vector<Number>& column, RowRange rows)
+ScriptArray seen_rows(const std::vector<Number>& column, RowRange rows)
 {
   return {sizeof(Number) == 8 ? 'q' : 'i', column.data() + rows.begin, {rows.size()}, {static_cast<std::int64_t>(sizeof(Number))}};
 }
@@ -67,14 +67,14 @@ ScriptArray array_of(std::vector<Number> numbers, std::vector<std::int64_t> shap
   return array;
 }
 
-void put(Real value, std::vector<Real>& numbers) { numbers.push_back(value); }
-void put(const Mat3& value, std::vector<Real>& numbers)
+void append_numbers(Real value, std::vector<Real>& numbers) { numbers.push_back(value); }
+void append_numbers(const Mat3& value, std::vector<Real>& numbers)
 {
   for (Index i = 0; i < 9; ++i)
     numbers.push_back(value(i / 3, i % 3));
 }
 template <int N>
-void put(const Vec<N>& value, std::vector<Real>& numbers)
+void append_numbers(const Vec<N>& value, std::vector<Real>& numbers)
 {
   numbers.insert(numbers.end(), value.begin(), value.end());
 }
@@ -85,7 +85,7 @@ ScriptArray computed(const Quantity<kind, Value>& field, const Of& of, RowRange 
 {
   std::vector<Real> numbers;
   for (std::size_t row = rows.begin; row < rows.end; ++row)
-    put(value_of<D>(field, of, row), numbers);
+    append_numbers(value_of<D>(field, of, row), numbers);
   std::vector<std::int64_t> shape{rows.size()};
   if constexpr (kind == QuantityKind::vector)
     shape.push_back(D);
@@ -183,7 +183,7 @@ ScriptArray particles_of(const RunView<D>& view, const ParticleColumns<D>& colum
   std::optional<ScriptArray> array;
   for_each_seen_column(columns.particles, [&](std::string_view column, const auto& values) {
     if (column == name)
-      array = rows_of(values, rows);
+      array = seen_rows(values, rows);
   });
   if (!array && (body || columns.bodies.size() == 1))
     if (const std::size_t b = body.value_or(0); const HistoryVariable* const variable = variable_of(columns.materials[b], name))
@@ -217,7 +217,7 @@ ScriptArray nodes_of(const RunView<D>& view, const std::string& name)
   if (name == "position") {
     std::vector<Real> numbers;
     for (const Vec<D>& x : mesh.nodes())
-      put(x, numbers);
+      append_numbers(x, numbers);
     return array_of(std::move(numbers), {n, D});
   }
   if (name == "cells") {

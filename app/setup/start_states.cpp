@@ -219,10 +219,10 @@ class StartOfBody {
       stress = add_diagonal(stress, u);
     if (taken_.drops_pore)
       stress = add_diagonal(stress, -u);
-    for (const auto& [key, values] : points_.history)
+    for (const auto& column : points_.history)
       for (const HistoryVariable& variable : material_.law().variables())
-        if (variable.key == key)
-          history_value(material_, variable, i) = fit.at_within([&](Index k) { return values[static_cast<std::size_t>(k)]; });
+        if (variable.key == column.first)
+          history_value(material_, variable, i) = fit.at_within([&](Index k) { return column.second[static_cast<std::size_t>(k)]; });
     if (!material_.prestress(i, unpack(stress))) {
       found.refused = {1, particles_.id[p]};
       return found;

@@ -147,7 +147,8 @@ class PointReader {
     for (const std::size_t row : rows_)
       for (const UsedColumn& used : stress_)
         largest = std::max(largest, std::abs(value(used, row)));
-    for (const auto& [one, other] : choice_.halves()) {
+    for (const auto& half : choice_.halves()) {
+      const UsedColumn &one = half.first, &other = half.second;
       const auto apart = [&](std::size_t row) { return std::abs(value(one, row) - value(other, row)) > rounding * largest; };
       const auto first = std::ranges::find_if(rows_, apart);
       if (first == rows_.end())

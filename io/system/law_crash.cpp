@@ -43,13 +43,15 @@ std::string_view name_of_signal(int signal) noexcept
 
 bool write_law_at_work(int signal) noexcept
 {
-  const LawCall& call = law_call_of_thread();
+  const LawCall& call = signal == SIGINT ? law_call_of_any_thread() : law_call_of_thread();
   if (call.law == nullptr)
     return false;
   write_words("error: law ");
   write_words(call.law);
   if (signal == 0)
     write_words(" ended the process");
+  else if (signal == SIGINT)
+    write_words(" had not returned");
   else {
     write_words(" crashed (");
     write_words(name_of_signal(signal));

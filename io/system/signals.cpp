@@ -4,6 +4,8 @@
 #include <array>
 #include <csignal>
 
+#include "io/system/law_crash.hpp"
+
 namespace talus {
 
 namespace {
@@ -14,6 +16,7 @@ volatile std::sig_atomic_t noted = 0;
 extern "C" void note(int number)
 {
   if (number == SIGINT && noted == SIGINT) {
+    write_law_at_work(SIGINT);
     std::signal(SIGINT, SIG_DFL);
     std::raise(SIGINT);
   }

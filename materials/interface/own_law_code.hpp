@@ -81,5 +81,7 @@ struct LawCall {
 };
 /// That of this thread; law is nullptr if there is none.  For handlers of signals.
 const LawCall& law_call_of_thread() noexcept;
+/// The same, or if this thread calls none, that of another thread.
+const LawCall& law_call_of_any_thread() noexcept;
 
 }  // namespace talus

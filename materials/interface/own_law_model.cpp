@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <map>
@@ -18,7 +19,37 @@ namespace {
 
 using MessageText = std::array<char, 512>;
 
-thread_local LawCall call_of_thread;
+constexpr std::size_t most_threads = 1024;
+std::array<std::atomic<const LawCall*>, most_threads> calls_of_threads;  // of those that have called a law
+
+/// The call of a thread, which other threads can find while the thread exists.
+class CallOfThread {
+ public:
+  CallOfThread() noexcept
+  {
+    for (auto& place : calls_of_threads) {
+      const LawCall* nobody = nullptr;
+      if (place.compare_exchange_strong(nobody, &now)) {
+        place_ = &place;
+        return;
+      }
+    }
+  }
+  ~CallOfThread()
+  {
+    if (place_ != nullptr)
+      *place_ = nullptr;
+  }
+  CallOfThread(const CallOfThread&) = delete;
+  CallOfThread& operator=(const CallOfThread&) = delete;
+
+  LawCall now = {};
+
+ private:
+  std::atomic<const LawCall*>* place_ = nullptr;  // none for threads beyond the last place
+};
+
+thread_local CallOfThread call_of_thread;
 
 constexpr int has_thrown = std::numeric_limits<int>::min();
 
@@ -33,7 +64,7 @@ int call_safely(const F& function, bool serial, const LawCall& call, MessageText
   std::unique_lock guard(one_at_a_time, std::defer_lock);
   if (serial)
     guard.lock();
-  call_of_thread = call;
+  call_of_thread.now = call;
   try {
     result = function();
   } catch (const std::exception& thrown) {
@@ -41,7 +72,7 @@ int call_safely(const F& function, bool serial, const LawCall& call, MessageText
   } catch (...) {
     say("it has thrown an exception");
   }
-  call_of_thread = {};
+  call_of_thread.now = {};
   message.back() = '\0';
   return result;
 }
@@ -329,6 +360,16 @@ const talus_law& described_law(const talus_law* (*describe)(), const std::string
   return *law;
 }
 
-const LawCall& law_call_of_thread() noexcept { return call_of_thread; }
+const LawCall& law_call_of_thread() noexcept { return call_of_thread.now; }
+
+const LawCall& law_call_of_any_thread() noexcept
+{
+  if (call_of_thread.now.law != nullptr)
+    return call_of_thread.now;
+  for (const auto& place : calls_of_threads)
+    if (const LawCall* const call = place.load(); call != nullptr && call->law != nullptr)
+      return *call;
+  return call_of_thread.now;
+}
 
 }  // namespace talus

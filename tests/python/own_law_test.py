@@ -347,6 +347,17 @@ class OwnLaws(unittest.TestCase):
         self.assertEqual(done.returncode, -signal.SIGSEGV)
         self.assertIn("law broken of libbroken.so crashed (SIGSEGV", done.stderr)
 
+    def test_a_loop_without_end_is_named_when_the_run_is_ended(self):
+        name = self.broken("volatile int forever = b->time > 0.01 && b->id[0] > 20; while (forever) ;")
+        command = [PROGRAM, "run", name, "--out", "broken", "--quiet", "--threads", "2"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
+            for _ in range(2):
+                with self.assertRaises(subprocess.TimeoutExpired):
+                    run.wait(1.5)
+                run.send_signal(signal.SIGINT)
+            self.assertEqual(run.wait(30), -signal.SIGINT)
+            self.assertIn("error: law broken of libbroken.so had not returned in a block of particles, from ", run.stderr.read())
+
     def test_an_exception_is_caught(self):
         source = (BROKEN % ('if (b->time > 0.01) throw std::runtime_error("thrown here");', "TALUS_LAW_VERSION"))
         source = source.replace("#include <math.h>", "#include <stdexcept>").replace("const talus_law* broken", "extern \"C\" const talus_law* broken")
