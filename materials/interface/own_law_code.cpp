@@ -62,7 +62,7 @@ void check_parameters(std::span<const talus_law_parameter> all)
   }
 }
 
-/// How the law of the program describes a variable of this key, whichever law that is; nullptr if none has it.
+/// Throws Error for a history variable that is wrong in itself, or has the key of one before it.
 void check_variable(const talus_law_variable& one, std::size_t number, std::span<const HistoryVariable> before)
 {
   if (!is_key(one.key))
