@@ -130,6 +130,18 @@ def step(simulation):
         self.assertEqual(run.status, "stopped")
         np.testing.assert_array_equal(run.checkpoints[-1].particles("ball")["velocity"][:, 0], 8.0)
 
+    def test_the_first_step_is_as_short_as_the_new_velocities_ask(self):
+        """As that of bodies which have them from the scene."""
+        fast = scene(bodies=1)
+        fast["boundaries"], fast["time"], fast["outputs"] = None, {"end": 1e-3}, {"history": {"every": 1e-9}}
+        fast["bodies"] = [{**fast["bodies"][0], "velocity": [300, 0]}]
+        first = talus.run(fast, out="scene").history["dt"][1]
+        fast["bodies"] = [{**fast["bodies"][0], "velocity": None}]
+        slow = talus.run(fast, out="slow").history["dt"][1]
+        run = self.run_with("def start(simulation):\n    simulation.particles['velocity'] = [300, 0]\n", fast)
+        self.assertEqual(run.history["dt"][1], first)
+        self.assertGreater(slow, 2 * first)
+
     def test_a_particle_code_of_ones_own(self):
         """Gravity by the script alone is gravity."""
         no_gravity = scene(bodies=1)
