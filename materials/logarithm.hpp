@@ -92,6 +92,7 @@ inline constexpr std::array<Real, 9> exponential_series = [] {
   return c;
 }();
 
+// What uses principal axes is not inlined: most steps do not need it, and inlined it leaves fewer registers to them.
 template <class F>
 Sym3 in_principal_axes(const Sym3& A, F&& f) noexcept
 {
@@ -99,11 +100,11 @@ Sym3 in_principal_axes(const Sym3& A, F&& f) noexcept
   const Mat3& V = axes.eigenvectors();
   return pack(V * axes.eigenvalues().unaryExpr(f).asDiagonal() * V.transpose());
 }
-inline Sym3 log1p_by_axes(const Sym3& B) noexcept
+[[gnu::noinline]] inline Sym3 log1p_by_axes(const Sym3& B) noexcept
 {
   return in_principal_axes(B, [](Real x) { return std::log1p(x); });
 }
-inline Sym3 expm1_by_axes(const Sym3& E) noexcept
+[[gnu::noinline]] inline Sym3 expm1_by_axes(const Sym3& E) noexcept
 {
   return in_principal_axes(E, [](Real x) { return std::expm1(x); });
 }
@@ -166,11 +167,11 @@ Sym3Of<typename Expression::Scalar> expm1(const Eigen::MatrixBase<Expression>& e
 
 namespace detail {
 // If one lane is beyond the radius of the series, each lane is treated separately, as others may be within.
-inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept
+[[gnu::noinline]] inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept
 {
   return tensor_in_each_lane(B, [](const Sym3& one) { return log1p(one); });
 }
-inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept
+[[gnu::noinline]] inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept
 {
   return tensor_in_each_lane(E, [](const Sym3& one) { return expm1(one); });
 }

@@ -202,18 +202,24 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   {
     const MatOf<D> rate = strip.L.load(i);
     const SimdReal volume_before = strip.volume.load(i), shrinking = max(-SimdReal(rate.trace()), 0);
-    Mat3Of<SimdReal> F, velocity_gradient = embed(rate);
-    const SimdReal J = detail::deform(strip, i, rate, F);
-    const Sym3Of<SimdReal> stored = strip.stress.load(i);
-    Mat3Of<SimdReal> stress = unpack(stored);
+    const Mat3Of<SimdReal> F = detail::move(strip, i, rate);
+    const SimdReal J = F.determinant();
+    detail::take_volume(strip, i, J);
+
+    const Sym3Of<SimdReal> before = strip.stress.load(i);
+    Mat3Of<SimdReal> F_of_law = F, L_of_law = embed(rate), stress_of_law = unpack(before);
     if (material.averages_volume)
-      detail::average_volume(strip, i, J, F, velocity_gradient);
+      detail::average_volume(strip, i, J, F_of_law, L_of_law);
     StateLanes<State> states{strip.history.first + i, strip.history.stride, detail::lanes_of(strip, i)};
-    const SimdReal speed_of_waves = wave_speed(F, states);
-    const detail::StepPressures pressures = detail::find_pressures(material, strip, i, shrinking, speed_of_waves, stress);
-    const Mat3Of<SimdReal> after = update({F, velocity_gradient, stress, strip.dt, pressures.viscous, strip.elastic}, states);
-    detail::take_answer<D>(after, material, strip, i, {rate, stored, J, volume_before, shrinking, speed_of_waves, pressures}, diffusivity(),
-                           sums);
+    const SimdReal speed_of_waves = wave_speed(F_of_law, states);
+    const auto [viscous, pore] = detail::find_pressures(material, strip, i, shrinking, speed_of_waves, stress_of_law);
+    Mat3Of<SimdReal> after = update({F_of_law, L_of_law, stress_of_law, strip.dt, viscous, strip.elastic}, states);
+    after.diagonal().array() -= viscous + pore;
+
+    const Sym3Of<SimdReal> stress = talus::pack(after);
+    const auto sound = detail::take_stress(strip, i, J, stress);
+    const SimdReal work = detail::work_of(strip, i, rate, before, volume_before, stress);
+    detail::count(material, strip, i, sound, work, speed_of_waves, shrinking, diffusivity(), sums);
   }
 
   L law_;
