@@ -10,7 +10,7 @@ namespace talus {
 template <int D>
 Vec<D> LoadIncrement<D>::left_over(std::span<const Real> f, std::size_t k) const
 {
-  return -force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) - free_[k] * jump_force_[to_size(unknowns_.node[k])];
+  return -force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) - free_[k] * jumps_.at(unknowns_.node[k]);
 }
 
 /// Half of the work of loads and gravity at the displacements, with forces as they are before these.  What is out of balance before and
@@ -88,7 +88,7 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
     NodeWork<D> of_node;
     of_node.gravity = sum.mass * gravity.dot(displacement(x, k)) / 2;
     of_node.damping = -left_over(f, k).dot(displacement(x, k)) / 2;
-    const Vec<D> held = force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) + jump_force_[to_size(unknowns_.node[k])];
+    const Vec<D> held = force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) + jumps_.at(unknowns_.node[k]);
     of_node.damped = ForceAndMoment<D>::at(m_.problem.mesh.node(unknowns_.node[k]), dt_ * held);
     of_node.mass = sum.mass;
     of_node.first_moment = sum.mass * m_.problem.mesh.node(unknowns_.node[k]);
