@@ -300,6 +300,13 @@ TEST(Scene, KeepsDefaultsOfWhatIsNotGiven)
   EXPECT_FALSE(s.outputs.particles || s.outputs.mesh || s.outputs.history);
 }
 
+TEST(Scene, TakesAnEmptyListOfWhatNeedNotBeThereAsNone)
+{
+  const Scene s = read_scene(folder / "smallest.yaml", std::vector<std::string>{"loads=[]", "boundaries=[]", "stages=[]"});
+  EXPECT_TRUE(s.loads.empty() && s.boundaries.empty() && s.stages.empty());
+  EXPECT_THROW(read_scene(folder / "smallest.yaml", std::vector<std::string>{"bodies=[]"}), SceneErrors);
+}
+
 TEST(Scene, ReadsWhenItsStateIsKept)
 {
   const CheckpointSpec asked = scene("solid.yaml").outputs.checkpoint, usual = scene("plane.yaml").outputs.checkpoint;
