@@ -123,8 +123,8 @@ Sym3Of<SimdReal> tensor_in_each_lane(const Sym3Of<SimdReal>& all, F&& f) noexcep
   }
   return result;
 }
-inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept;
-inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept;
+[[gnu::noinline]] inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept;
+[[gnu::noinline]] inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept;
 
 }  // namespace detail
 

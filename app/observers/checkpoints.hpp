@@ -98,6 +98,7 @@ struct KeptBodies {
   Clock clock;
   StageState stage;
   EnergyLedger energy;
+  FlowLedger flow;
   std::vector<std::vector<Material>> laws;  ///< laws of each stage, to be set before reading
 };
 

@@ -229,7 +229,8 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent event)
     welcome(view);
   if (event == RunEvent::stage_begins)
     stage_start_ = view.state.clock.time;
-  if (event == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && view.stage_name != "geostatic") {
+  if (event == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && view.stage_kind != "geostatic" &&
+      view.stage_kind != "static") {
     runout_.begin(view);
     name("runout.csv");
   }

@@ -103,6 +103,10 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& rank
   };
   std::ranges::for_each(setup.conditions.loads.on_particles, press);
   std::ranges::for_each(setup.conditions.loads.on_mesh, press);
+  for (const MeshTraction<D>& load : setup.conditions.loads.on_mesh)
+    if (!load.height.empty())  // open water
+      pressure = std::max(pressure, load.unit_weight * std::max(load.level.largest_magnitude() - mesh.low()[D - 1], Real{0}) *
+                                        load.table.largest_magnitude());
   for (const SurfaceLoad<D>& load : setup.conditions.loads.on_surfaces)
     pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure) * load.largest_height(mesh.low()[D - 1])) *
                                       load.table.largest_magnitude());
@@ -271,6 +275,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.origin = std::move(seeds.origin);
   setup.state.clock.lag = seeds.lag;
   setup.state.energy.largest_before = seeds.largest_before;
+  setup.state.flow.begun = seeds.water_flows_on;
   const CellOccupancy<D> has_particles(mesh, setup.state.particles, setup.state.bodies, ranks, [](const std::string&) { return true; });
   const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });

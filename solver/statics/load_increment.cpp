@@ -185,7 +185,8 @@ bool LoadIncrement<D>::find_residual(std::span<const Real> x, std::span<Real> f)
     return false;
   const Real end = time_ + dt_;
   const Vec<D> gravity = m_.problem.loads.gravity(end, m_.state.stage.ramp(end));
-  const Kick kick{time_, time_ + dt_ / 2};
+  const Real middle = time_ + dt_ / 2;  // whose velocity a boundary has in all of the increment
+  const Kick kick{middle, middle};
   reaction_.resize(unknowns_.node.size());
   weight_.resize(unknowns_.node.size());
   for (std::size_t k = 0; k < unknowns_.node.size(); ++k) {
@@ -273,7 +274,8 @@ std::string LoadIncrement<D>::place_of_failure(std::span<const Real> x, std::spa
     for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
       if (const Real size = unit * Eigen::Map<const Vec<D>>(values.data() + k * D).norm(); size > most)
         most = size, where = m_.problem.mesh.node(unknowns_.node[k]);
-    const bool is_here = most > 0 && most == m_.problem.ranks->max(most);
+    const Real of_all = m_.problem.ranks->max(most);  // also of ranks on which nothing moves
+    const bool is_here = most > 0 && most == of_all;
     return m_.problem.ranks->first(
         is_here ? fmt::format("{} is at ({:.5g}), {:.3g} {}", what, fmt::join(where.begin(), where.end(), ", "), most, of_unit) : "");
   };
