@@ -44,7 +44,7 @@ class RigidShape {
   {
     if (const Ball* ball = std::get_if<Ball>(&surface_)) {
       const Real r = x.norm();
-      return {r - ball->radius, r > 0 ? Vec<D>(x / r) : Vec<D>(Vec<D>::Unit(D - 1)), false};
+      return {r - ball->radius, r > 0 ? Vec<D>(x / r) : Vec<D>(Vec<D>::Unit(D - 1)), false, Vec<D>::Zero()};
     }
     return facets()->distance(x);
   }
@@ -105,7 +105,7 @@ struct RigidState {
   SurfaceDistance<D> distance(const RigidShape<D>& shape, const Vec<D>& place) const
   {
     const SurfaceDistance<D> there = shape.distance(arm_in_body(place));
-    return {there.distance, in_scene(there.normal), there.on_rim};
+    return {there.distance, in_scene(there.normal), there.on_rim, in_scene(there.rim_normal)};
   }
   /// The tensor of inertia in the axes of the scene [kg m^2].
   Mat3 inertia(const RigidBody<D>& body) const noexcept { return turn * body.inertia * turn.transpose(); }
