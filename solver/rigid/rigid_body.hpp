@@ -27,6 +27,9 @@ Vec<D> turned_arm(const Vec3& spin, const Vec<D>& arm) noexcept
 /// What facets are: the surface of a solid, or a sheet without thickness.
 enum class FacetsOf : std::uint8_t { solid, sheet };
 
+/// How far apart the points of its surface are at most at which a rigid body of facets is felt by others, for the radius around it [m].
+constexpr Real spacing_of_samples(Real radius) noexcept { return radius / 8; }
+
 /// The surface of a rigid body, about its centre of mass: a disk or ball of a radius, or facets.
 template <int D>
 class RigidShape {
@@ -38,7 +41,7 @@ class RigidShape {
   {
     for (const Vec<D>& corner : this->facets()->corners())
       radius_ = std::max(radius_, corner.norm());
-    samples_ = this->facets()->samples(radius_ / 8);
+    samples_ = this->facets()->samples(spacing_of_samples(radius_));
   }
   SurfaceDistance<D> distance(const Vec<D>& x) const
   {
