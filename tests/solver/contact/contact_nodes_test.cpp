@@ -88,6 +88,40 @@ TYPED_TEST(ContactIn, UnderTheEdgesOfABlockThePlaneSaysWhichWayTheSurfaceFaces)
   end_sweeps(m);
 }
 
+// With more fields impulses are exchanged in several sweeps, of which the limits are one.  The third field touches neither.
+TYPED_TEST(ContactIn, CohesionActsOnceInAStepWithThreeFields)
+{
+  constexpr int D = TypeParam::D;
+  constexpr Real friction = 0.2, cohesion = 50, dt = 1e-6;
+  const Vec<D> v_low = along<D>(D - 1, 1) + along<D>(0, 5), v_high = along<D>(D - 1, -1) - along<D>(0, 5);
+  const auto rubbed = [&](bool three) {
+    auto m = blocks<TypeParam>(v_low, v_high, rubbing(friction, cohesion));
+    if (three) {
+      Contacts& contacts = m.problem.contacts;
+      contacts.n_fields = 3;
+      for (const Index other : {0, 1})
+        contacts.laws.push_back({.first = other, .second = 2, .first_body = {}, .second_body = {}});
+      add_body<D>(
+          m, "speck", rubber(1e4, 0.3, 1000), 4, [&](const Vec<D>& x) { return (x.array() < 0.1).all(); },
+          [&](const Vec<D>&) { return Vec<D>(Vec<D>::Zero()); });
+      contacts.field_of_body.push_back(2);
+      make_ready(m);
+    }
+    make_step(m, dt);
+    Real sum = 0;
+    for (const ContactNode<D>& at : m.work.contact.nodes()) {
+      const Real most = friction * at.pressed.norm() + cohesion * at.area * dt;
+      EXPECT_LE(at.rubbed.norm(), most * (1 + 1e-9));
+      sum += at.rubbed.norm();
+    }
+    end_sweeps(m);
+    return sum;
+  };
+  const Real two = rubbed(false);
+  EXPECT_GT(two, 0);
+  EXPECT_NEAR(rubbed(true), two, 1e-9 * two);
+}
+
 TYPED_TEST(ContactIn, BlocksThatPartDoNotAttractEachOther)
 {
   constexpr int D = TypeParam::D;
