@@ -139,7 +139,7 @@ RunLimits run_limits_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>&
 }
 
 template <int D>
-std::uint64_t digest_of_files(const Setup<D>& setup)
+std::uint64_t digest_of_files(const Scene& scene, const Setup<D>& setup)
 {
   std::vector<Real> numbers = setup.conditions.water.table;
   numbers.insert(numbers.end(), setup.start_digest.begin(), setup.start_digest.end());
@@ -150,6 +150,17 @@ std::uint64_t digest_of_files(const Setup<D>& setup)
     if (const Record* record = condition.record())
       for (const std::vector<Real>* part : {&record->time, &record->velocity, &record->acceleration})
         numbers.insert(numbers.end(), part->begin(), part->end());
+  for (std::size_t r = 0; r < scene.rigid.size(); ++r) {
+    const RigidSpec& spec = scene.rigid[r];
+    const FacetSurface<D>* facets = setup.conditions.rigid.bodies[r].shape->facets();
+    if ((spec.file.empty() && spec.sheet_file.empty()) || !facets)
+      continue;
+    numbers.insert(numbers.end(), setup.state.rigid[r].x.begin(), setup.state.rigid[r].x.end());  // corners are about it
+    for (const Vec<D>& corner : facets->corners())
+      numbers.insert(numbers.end(), corner.begin(), corner.end());
+    for (const auto& facet : facets->facets())
+      std::ranges::transform(facet, std::back_inserter(numbers), [](Index corner) { return static_cast<Real>(corner); });
+  }
   return digest(std::span<const Real>(numbers));
 }
 
@@ -328,7 +339,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   const Gravity<D>& gravity = setup.conditions.loads.gravity;
   setup.conditions.transfer = scene.transfer.with_damping(
       fall_time(mesh, has_particles, gravity.table.largest_magnitude() * gravity.acceleration.norm()), any_body_flows(setup));
-  setup.from_files = digest_of_files(setup);
+  setup.from_files = digest_of_files(scene, setup);
   return setup;
 }
 
