@@ -59,6 +59,7 @@ CASES = [
     "sphere_container",
     "infinite_slope",
     "fluid_layer",
+    "arrest",
     "dam_break",
     "granular_layer",
     "granular_chute",

@@ -143,6 +143,7 @@ void put(StateLanes<State>& lanes, Sym3 Owner::*member, const Sym3Of<SimdReal>& 
 ///   State initial_state() const                                     history of a particle at rest, where zero is not it
 ///   void prestress(const Mat3& stress, State&) const noexcept       history that makes `stress` the stress at F = I (K0 start)
 ///   Real yield(const Mat3& stress, const State&) const noexcept     <= 0 on or inside the yield surface [Pa]
+///   static constexpr bool overstress = true                         yield() is that of slow loading: stresses of flow are above it
 ///   Real wave_speed(const Mat3& F, const State&, const Constants&) const noexcept   the bound where the history decides; told before the step
 ///   Real diffusivity(const Constants&) const noexcept               largest diffusivity, of momentum or heat [m^2/s]: bounds the step
 ///   void divide_strength(Real factor) noexcept                      parameters whose shear strength is that over the factor

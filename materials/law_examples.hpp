@@ -123,6 +123,15 @@ inline HerschelBulkley law_example()
   return law;
 }
 template <>
+inline ElasticHerschelBulkley law_example()  // fresh concrete of low slump
+{
+  auto law = detail::elastic_example<ElasticHerschelBulkley>(2300);
+  law.yield_stress = 2e3;
+  law.consistency = 150;
+  law.flow_index = 0.8;
+  return law;
+}
+template <>
 inline VonMises law_example()
 {
   auto law = detail::elastic_example<VonMises>();

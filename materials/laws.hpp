@@ -3,6 +3,7 @@
 #include "core/type_list.hpp"
 #include "materials/corotated.hpp"
 #include "materials/drucker_prager.hpp"
+#include "materials/elastic_herschel_bulkley.hpp"
 #include "materials/hencky.hpp"
 #include "materials/herschel_bulkley.hpp"
 #include "materials/johnson_cook.hpp"
@@ -31,6 +32,7 @@ using Laws = TypeList<
     MuI,
     Newtonian,
     HerschelBulkley,
+    ElasticHerschelBulkley,
     VonMises,
     JohnsonCook,
     LinearFirstPiola>;

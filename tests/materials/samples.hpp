@@ -40,6 +40,7 @@ inline void add_options(Viscoelastic& law)
   law.second = PronyTerm{.share = 0.2, .time = 0.1};
   law.third = PronyTerm{.share = 0.1, .time = 2};
 }
+inline void add_options(ElasticHerschelBulkley& law) { law.yield_stress = 2e4; }  // strains of a per cent come near it
 inline void add_options(Newtonian& law) { law.volume_viscosity = 2; }
 inline void add_options(VonMises& law)  // without `rate`: yield() is that of slow loading
 {
