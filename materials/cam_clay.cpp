@@ -30,34 +30,26 @@ struct Ending {
 ///     p = p(compression - x),   pc = pc(x),   q = q_trial / (1 + 6 G m / slope^2),   multiplier m = x / (2 p - (1 - b) pc).
 /// On either side of the critical state x runs from 0 to where 2 p = (1 - b) pc; m increases from 0 to infinity and q decreases to 0, so
 /// the ellipse is crossed in between.
-template <class T>
+template <class T, class Curves>
 struct EllipseReturn {
-  const CamClayConstants& c;
+  const Curves& curves;
   T compression, q_trial, start, compacted;
-  Real slope2 = c.slope * c.slope, shear_rate = 6 * c.shear / slope2, middle = 1 - c.cohesion;
+  Real of_ellipse = curves.c.slope, cohesion = curves.c.cohesion, middle = 1 - cohesion;
+  Real slope2 = of_ellipse * of_ellipse, shear_rate = 6 * curves.c.shear / slope2;
 
-  T preconsolidation_after(const T& compaction) const noexcept
-  {
-    using std::exp, std::max;
-    return c.rate > 0 ? c.sinh_of(max(T(compacted + compaction), T(0))) : T(start * exp(T(compaction / c.plastic)));
-  }
-  T hardening_under(const T& pc) const noexcept
-  {
-    using std::sqrt;
-    return c.rate > 0 ? T(c.rate * sqrt(T(c.bulk * c.bulk + pc * pc))) : T(pc / c.plastic);
-  }
+  T preconsolidation_after(const T& compaction) const noexcept { return curves.preconsolidation_after(compaction, start, compacted); }
   /// The value of q^2 / slope^2 + (p + b pc) (p - pc) at |x| = size, and its slope; x is negative beyond the critical state.
   ValueAndSlopeOf<T> excess(const T& sign, const T& size) const noexcept
   {
     using std::isfinite;
     const T x = sign * size;
-    const T p = c.pressure(T(compression - x)), pc = preconsolidation_after(x), h = 2 * p - middle * pc;
-    const T p_slope = -c.stiffness(p), pc_slope = hardening_under(pc), h_slope = 2 * p_slope - middle * pc_slope;
+    const T p = curves.pressure(T(compression - x)), pc = preconsolidation_after(x), h = 2 * p - middle * pc;
+    const T p_slope = -curves.stiffness(p), pc_slope = curves.hardening(pc), h_slope = 2 * p_slope - middle * pc_slope;
     const auto bounded = isfinite(T(p * p)), before_end = sign * h > 0, regular = bounded && before_end;
     const T below = where(regular, h + shear_rate * x, 1), q = q_trial * (h / below);
     const T q_slope = q_trial * shear_rate * (x * h_slope - h) / (below * below);
-    const T value = q * q / slope2 + (p + c.cohesion * pc) * (p - pc);
-    const T slope = sign * (2 * q * q_slope / slope2 + p_slope * h - (middle * p + 2 * c.cohesion * pc) * pc_slope);
+    const T value = q * q / slope2 + (p + cohesion * pc) * (p - pc);
+    const T slope = sign * (2 * q * q_slope / slope2 + p_slope * h - (middle * p + 2 * cohesion * pc) * pc_slope);
     constexpr Real no_slope = std::numeric_limits<Real>::quiet_NaN();
     return {where(regular, value, where(bounded, T(-1), p)), where(regular, slope, no_slope)};
   }
@@ -67,7 +59,7 @@ struct EllipseReturn {
   {
     using std::abs, std::isfinite, std::max, std::min, std::sqrt;
     // At this compaction p is the middle of the ellipse before the step: at the critical state or beyond it.
-    const T end = compression - c.compression_under(T(0.5 * middle * start));
+    const T end = compression - curves.compression_under(T(0.5 * middle * start));
     const T sign = where(end < 0, T(-1), T(1));
     const auto off_critical = yields && !(end == 0);
     T x = 0;
@@ -75,10 +67,10 @@ struct EllipseReturn {
       const ValueAndSlopeOf<T> first = excess(sign, 0);
       T size = positive_root<T>([&](const T& y) { return excess(sign, y); }, abs(end), -first.value / first.slope, off_critical);
       // The error of the root finder, 1e-12 of the root, is larger than a pressure that has become many orders smaller.
-      const T left = c.pressure(T(compression - sign * size));
+      const T left = curves.pressure(T(compression - sign * size));
       constexpr int more = 2;
       for (int i = 0; i < more; ++i) {
-        const auto rough = off_critical && size * c.stiffness(left) > abs(left);
+        const auto rough = off_critical && size * curves.stiffness(left) > abs(left);
         if (!any_of(rough))
           break;
         const ValueAndSlopeOf<T> last = excess(sign, size);
@@ -86,30 +78,32 @@ struct EllipseReturn {
       }
       x = where(off_critical, sign * size, 0);
     }
-    const T p = c.pressure(T(compression - x)), pc = preconsolidation_after(x), h = 2 * p - middle * pc;
+    const T p = curves.pressure(T(compression - x)), pc = preconsolidation_after(x), h = 2 * p - middle * pc;
     // Near the critical state x and h are both small, so q is computed from the ellipse; near the ends of the ellipse from the flow.
-    const auto near = abs(h) < 0.5 * (1 + c.cohesion) * pc;
-    const T of_ellipse = c.slope * sqrt(where(near, (p + c.cohesion * pc) * (pc - p), T(0)));
-    const T q = where(near, of_ellipse, q_trial * (h / where(near, T(1), h + shear_rate * x)));
+    const auto near = abs(h) < 0.5 * (1 + cohesion) * pc;
+    const T along = of_ellipse * sqrt(where(near, (p + cohesion * pc) * (pc - p), T(0)));
+    const T q = where(near, along, q_trial * (h / where(near, T(1), h + shear_rate * x)));
     return {p, min(q, q_trial), x};
   }
 };
 
 /// The elastic energy per initial volume [J/m^3] of an elastic left Cauchy-Green tensor minus identity.
-template <class T>
-T stored_energy(const Sym3Of<T>& left, const CamClayConstants& c) noexcept
+template <class T, class Curves>
+T stored_energy(const Sym3Of<T>& left, const Curves& curves) noexcept
 {
   const Sym3Of<T> strain = scale_and_shift(0.5, log1p(left), 0);
   const T volume = trace(strain);
-  return c.energy(T(-volume)) + c.shear * squared_norm(add_diagonal(strain, T(-volume / 3)));
+  return curves.energy(T(-volume)) + curves.c.shear * squared_norm(add_diagonal(strain, T(-volume / 3)));
 }
 
 }  // namespace
 
-template <class T>
-Mat3Of<T> CamClay::update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
+template <class Curves, class T>
+Mat3Of<T> CamClay::update_along(const Curves& curves, const IncrementOf<T>& in, StateOf<T, State>& state) const noexcept
 {
   using std::max;
+  constexpr bool ends = Curves::ends;
+  const Constants& c = curves.c;
   const T J = in.F.determinant();
   const Sym3Of<T> before = get(state, &State::elastic_left);
   const ElasticTrial<T> trial(in, before);
@@ -117,16 +111,15 @@ Mat3Of<T> CamClay::update(const IncrementOf<T>& in, StateOf<T, State>& state, co
     return no_answer_somewhere(*this, in, state, c);
   if (in.elastic) {
     put(state, &State::elastic_left, trial.left);
-    return unpack(scale_and_shift(2 * c.shear / J, trial.shear_strain, -c.pressure(T(-trial.volume_strain)) / J));
+    return unpack(scale_and_shift(2 * c.shear / J, trial.shear_strain, -curves.pressure(T(-trial.volume_strain)) / J));
   }
-  const bool ends = c.rate > 0;  // p0 falls to zero at a finite dilation
   const T opened = get(state, &State::opened_volume);
   const T compression = -trial.volume_strain - opened;  // opened volume closes first
   const T plastic_volume = get(state, &State::plastic_volume);
-  const T start = c.preconsolidation_at(plastic_volume), p_trial = c.pressure(compression), q_trial = 3 * c.shear * trial.shear;
+  const T start = curves.preconsolidation_at(plastic_volume), p_trial = curves.pressure(compression), q_trial = 3 * c.shear * trial.shear;
   const auto inside = p_trial <= start && q_trial * q_trial <= c.slope * c.slope * ((p_trial + c.cohesion * start) * (start - p_trial));
   // What dilation can take before nothing bears stress.
-  const T left_over = ends ? c.compaction_left(plastic_volume) : T(c.cohesion > 0 ? std::numeric_limits<Real>::infinity() : 0);
+  const T left_over = ends ? curves.compaction_left(plastic_volume) : T(c.cohesion > 0 ? std::numeric_limits<Real>::infinity() : 0);
   const auto used_up = compression + left_over <= no_compression, loose = ends ? used_up && !inside : used_up;
   const T given_up = ends ? left_over : T(0);
   put(state, &State::opened_volume, where(loose, max(T(-compression - left_over), T(0)), 0));
@@ -134,7 +127,7 @@ Mat3Of<T> CamClay::update(const IncrementOf<T>& in, StateOf<T, State>& state, co
   Ending<T> end{where(loose, T(0), p_trial), where(loose, T(0), q_trial), where(loose, T(-given_up), 0)};
   const auto yields = !loose && !inside;
   if (any_of(yields)) {
-    const EllipseReturn<T> map{c, where(yields, compression, 0), where(yields, q_trial, 0), start, given_up};
+    const EllipseReturn<T, Curves> map{curves, where(yields, compression, 0), where(yields, q_trial, 0), start, given_up};
     end = where(yields, map(yields), end);
   }
   const T remaining = where(q_trial > 0, end.q / above_nothing(q_trial), 0);
@@ -147,15 +140,22 @@ Mat3Of<T> CamClay::update(const IncrementOf<T>& in, StateOf<T, State>& state, co
   const T sheared = (q_trial - end.q) / (3 * c.shear);
   T work = max(T(end.p * end.compaction + end.q * sheared), T(0));  // up to round-off a positive number times the multiplier
   if (const auto breaks = loose && !(opened > 0); ends && any_of(breaks))
-    work = where(breaks, stored_energy(before, c), work);
+    work = where(breaks, stored_energy(before, curves), work);
   put(state, &State::plastic_volume, T(plastic_volume - end.compaction));
   put(state, &State::plastic_strain, T(get(state, &State::plastic_strain) + where(loose, trial.shear, sheared)));
   put(state, &State::plastic_work, T(get(state, &State::plastic_work) + work));
   const Sym3Of<T> stress = scale_and_shift(2 * c.shear * remaining / J, trial.shear_strain, -end.p / J);
   return unpack(where<T>(loose, Sym3Of<T>::Zero(), stress));
 }
-template Mat3 CamClay::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<SimdReal> CamClay::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
+#define TALUS_CAM_CLAY_CURVES(linear, sine)                                                                                             \
+  template Mat3 CamClay::update_along(const CamClayCurves<linear, sine>&, const Increment&, State&) const noexcept;                     \
+  template Mat3Of<SimdReal> CamClay::update_along(const CamClayCurves<linear, sine>&, const IncrementOf<SimdReal>&, StateLanes<State>&) \
+      const noexcept;
+TALUS_CAM_CLAY_CURVES(false, false)
+TALUS_CAM_CLAY_CURVES(false, true)
+TALUS_CAM_CLAY_CURVES(true, false)
+TALUS_CAM_CLAY_CURVES(true, true)
+#undef TALUS_CAM_CLAY_CURVES
 
 void CamClay::start_under(const Mat3& stress, State& state, const Constants& c) noexcept
 {
@@ -185,8 +185,10 @@ Real CamClay::yield_of(const State& state, const Constants& c) noexcept
 Real CamClay::wave_speed(const Mat3& F, const Constants& c) const noexcept
 {
   const Real compression = std::max(-std::log(F.determinant()), Real{0});
-  const Real p = c.pressure(compression);
-  return std::sqrt((c.stiffness(p) + p + 4 * c.shear / 3 * (1 + compression)) / density);
+  return c.with_curves([&](const auto& curves) {
+    const Real p = curves.pressure(compression);
+    return std::sqrt((curves.stiffness(p) + p + 4 * c.shear / 3 * (1 + compression)) / density);
+  });
 }
 
 template <class T>
@@ -194,9 +196,11 @@ T CamClay::wave_speed(const Mat3Of<T>&, const StateOf<T, State>& state, const Co
 {
   using std::max, std::sqrt;
   const Sym3Of<T> strain = scale_and_shift(0.5, log1p(get(state, &State::elastic_left)), 0);
-  const T p = c.pressure(T(-trace(strain)));
   const T shear = sqrt(squared_norm(add_diagonal(strain, T(-trace(strain) / 3))));
-  return sqrt(T((c.stiffness(p) + max(p, T(0)) + c.shear * (4.0 / 3 + 2 * shear)) / density));
+  return c.with_curves([&](const auto& curves) {
+    const T p = curves.pressure(T(-trace(strain)));
+    return sqrt(T((curves.stiffness(p) + max(p, T(0)) + c.shear * (4.0 / 3 + 2 * shear)) / density));
+  });
 }
 template Real CamClay::wave_speed(const Mat3&, const State&, const Constants&) const noexcept;
 template SimdReal CamClay::wave_speed(const Mat3Of<SimdReal>&, const StateLanes<State>&, const Constants&) const noexcept;

@@ -19,10 +19,10 @@ struct CamClayState {
   }
 };
 
-/// In Kirchhoff stress and logarithmic strain, p and compaction positive in compression, pc the preconsolidation pressure:
-///     elasticity  exponential  p = reference (exp(compression / swelling) - 1),    or linear  p = bulk compression
-///     ellipse     q^2 / slope^2 + (p + cohesion pc) (p - pc) = 0
-///     hardening   exponential  pc = preconsolidation exp(compaction / plastic),    or  pc = bulk sinh(rate max(compacted + compaction, 0)).
+template <bool linear, bool sine>
+struct CamClayCurves;
+
+/// What follows from the parameters of any law of the family.
 struct CamClayConstants {
   Real shear, reference, preconsolidation;  ///< stresses [Pa]
   Real slope;                               ///< of the ellipse [-]: M / sqrt(1 + 2 cohesion)
@@ -30,56 +30,132 @@ struct CamClayConstants {
   Real bulk;                                ///< at zero pressure [Pa]
   Real cohesion = 0;                        ///< beta, strength in isotropic tension over pc [-]
   Real rate = 0;                            ///< xi of the hyperbolic sine [-]; 0: exponential hardening
-  Real compacted = 0;                       ///< what the argument of the hyperbolic sine is at the start, over its rate [-]
+  Real compacted = 0;                       ///< compaction at the start [-], for hardening by the hyperbolic sine
   bool linear = false;                      ///< linear elasticity
+
+  /// Calls f with the curves that are chosen here.
+  template <class F>
+  auto with_curves(F&& f) const noexcept;
+  Real pressure(Real compression) const noexcept;
+  Real compression_under(Real p) const noexcept;
+  Real preconsolidation_at(Real plastic_volume) const noexcept;
+};
+
+/// In Kirchhoff stress and logarithmic strain, p and compaction positive in compression, pc the preconsolidation pressure:
+///     elasticity  exponential  p = reference (exp(compression / swelling) - 1),    or linear  p = bulk compression
+///     ellipse     q^2 / slope^2 + (p + cohesion pc) (p - pc) = 0
+///     hardening   exponential  pc = preconsolidation exp(-plastic_volume / plastic),
+///                 or by the hyperbolic sine  pc = bulk sinh(rate max(compacted - plastic_volume, 0)).
+/// The choice is one of types, so that each is compiled as if it were the only one.
+template <bool linear, bool sine>
+struct CamClayCurves {
+  const CamClayConstants& c;
+  /// With the hyperbolic sine nothing is left of pc after a finite dilation.
+  static constexpr bool ends = sine;
 
   template <class T>
   T pressure(const T& compression) const noexcept
   {
     using std::expm1;
-    return linear ? T(bulk * compression) : T(reference * expm1(T(compression / swelling)));
+    if constexpr (linear)
+      return c.bulk * compression;
+    else
+      return c.reference * expm1(T(compression / c.swelling));
   }
   /// The compression under a pressure.
   template <class T>
   T compression_under(const T& p) const noexcept
   {
     using std::log1p;
-    return linear ? T(p / bulk) : T(swelling * log1p(T(p / reference)));
+    if constexpr (linear)
+      return p / c.bulk;
+    else
+      return c.swelling * log1p(T(p / c.reference));
   }
   /// The bulk modulus under a pressure.
   template <class T>
   T stiffness(const T& p) const noexcept
   {
-    return linear ? T(bulk) : T((p + reference) / swelling);
+    if constexpr (linear)
+      return c.bulk;
+    else
+      return (p + c.reference) / c.swelling;
   }
   /// The energy of an elastic compression [J/m^3].
   template <class T>
   T energy(const T& compression) const noexcept
   {
-    return linear ? T(0.5 * bulk * compression * compression) : T(swelling * pressure(compression) - reference * compression);
+    if constexpr (linear)
+      return 0.5 * c.bulk * compression * compression;
+    else
+      return c.swelling * pressure(compression) - c.reference * compression;
   }
   template <class T>
   T preconsolidation_at(const T& plastic_volume) const noexcept
   {
     using std::exp;
-    return rate > 0 ? sinh_of(compaction_left(plastic_volume)) : T(preconsolidation * exp(T(-plastic_volume / plastic)));
+    if constexpr (sine)
+      return of_compaction(compaction_left(plastic_volume));
+    else
+      return c.preconsolidation * exp(T(-plastic_volume / c.plastic));
   }
   /// The compaction whose loss leaves no strength [-], for hardening by the hyperbolic sine.
   template <class T>
   T compaction_left(const T& plastic_volume) const noexcept
   {
     using std::max;
-    return max(T(compacted - plastic_volume), T(0));
+    return max(T(c.compacted - plastic_volume), T(0));
   }
-  /// pc [Pa] of a total compaction >= 0 [-], for hardening by the hyperbolic sine.
+  /// pc [Pa] after a further compaction, from `start` or with a compaction `left` before.
   template <class T>
-  T sinh_of(const T& compaction) const noexcept
+  T preconsolidation_after(const T& compaction, const T& start, const T& left) const noexcept
+  {
+    using std::exp, std::max;
+    if constexpr (sine)
+      return of_compaction(max(T(left + compaction), T(0)));
+    else
+      return start * exp(T(compaction / c.plastic));
+  }
+  /// Change of pc by compaction [Pa].
+  template <class T>
+  T hardening(const T& pc) const noexcept
+  {
+    using std::sqrt;
+    if constexpr (sine)
+      return c.rate * sqrt(T(c.bulk * c.bulk + pc * pc));
+    else
+      return pc / c.plastic;
+  }
+
+ private:
+  template <class T>
+  T of_compaction(const T& compaction) const noexcept
   {
     using std::expm1, std::min;
-    const T more = expm1(T(rate * compaction)), finite = min(more, T(1e17));
-    return 0.5 * bulk * (more + finite / (1 + finite));
+    const T more = expm1(T(c.rate * compaction)), finite = min(more, T(1e17));
+    return 0.5 * c.bulk * (more + finite / (1 + finite));
   }
 };
+
+template <class F>
+auto CamClayConstants::with_curves(F&& f) const noexcept
+{
+  if (rate > 0)
+    return linear ? f(CamClayCurves<true, true>{*this}) : f(CamClayCurves<false, true>{*this});
+  return linear ? f(CamClayCurves<true, false>{*this}) : f(CamClayCurves<false, false>{*this});
+}
+inline Real CamClayConstants::pressure(Real compression) const noexcept
+{
+  return with_curves([&](const auto& curves) { return curves.pressure(compression); });
+}
+inline Real CamClayConstants::compression_under(Real p) const noexcept
+{
+  return with_curves([&](const auto& curves) { return curves.compression_under(p); });
+}
+inline Real CamClayConstants::preconsolidation_at(Real plastic_volume) const noexcept
+{
+  return with_curves([&](const auto& curves) { return curves.preconsolidation_at(plastic_volume); });
+}
 
 /// The law but for its parameters: each law of the family has its own keys, from which the constants follow.
 struct CamClay {
@@ -88,13 +164,20 @@ struct CamClay {
   using Constants = CamClayConstants;
 
   template <class T>
-  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
+  {
+    return c.with_curves([&](const auto& curves) { return update_along(curves, in, state); });
+  }
   /// A bound for material that reached F from rest by elastic strain.  Without the history, plastic compaction makes the bound large, and
   /// after a prestress or dilation the material may be stiffer than the bound.
   Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
   /// The wave speed from the elastic strain in the history: rho_0 c^2 = K + 4/3 G - (Kirchhoff stress)_nn.
   template <class T>
   T wave_speed(const Mat3Of<T>& F, const StateOf<T, State>& state, const Constants& c) const noexcept;
+
+ private:
+  template <class Curves, class T>
+  Mat3Of<T> update_along(const Curves& curves, const IncrementOf<T>& in, StateOf<T, State>& state) const noexcept;
 
  protected:
   /// Sets the history for a stress.  A stress outside the ellipse raises the preconsolidation so that the stress lies on it; tension without

@@ -1,5 +1,6 @@
 #pragma once
 // Porous material with cohesion, such as snow, chalk and cemented soil: Cam clay whose ellipse reaches into tension.
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +53,12 @@ struct CohesiveCamClay : CamClay, Elasticity {
   void check(std::vector<std::string>& problems) const;
   /// As ModifiedCamClay::divide_strength: p0 and the strength in isotropic tension stay.
   void divide_strength(Real factor) noexcept { critical_state_slope = slope_over(critical_state_slope, factor); }
+
+  /// q / p in the middle of the ellipse, where shear goes on without change; above M, as beta moves the ellipse towards tension.
+  Real critical_slope() const noexcept
+  {
+    return critical_state_slope * (1 + cohesion_ratio) / ((1 - cohesion_ratio) * std::sqrt(1 + 2 * cohesion_ratio));
+  }
 
   Constants constants() const noexcept;
   void prestress(const Mat3& stress, State& state) const noexcept { start_under(stress, state, constants()); }

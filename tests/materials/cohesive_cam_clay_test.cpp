@@ -259,6 +259,9 @@ TEST(CohesiveCamClay, PrestressMayBeTensionAndRaisesThePreconsolidationOutside)
       EXPECT_LE((point.stress - start).norm(), 1e-10 * K);
       EXPECT_LE(point.state.plastic_strain, 1e-15) << "no flow but for rounding";
     }
+    Point<CohesiveCamClay> raised{.law = law};
+    raised.prestress(heavy);
+    EXPECT_NEAR(raised.law.yield(heavy, raised.state), 0, 1e-9 * K) << "raised as little as bears it";
     Point<CohesiveCamClay> inside{.law = law};
     inside.prestress(tension * (law.preconsolidation_pressure / p0));
     EXPECT_EQ(inside.state.plastic_volume, 0);

@@ -145,7 +145,8 @@ TEST_F(Initial, AnotherLawStartsFromTheStress)
   EXPECT_THAT(refusal(refused),
               HasSubstr("refused.yaml:5:10: error: bodies[0] \"bank\".material: the particles come from law "
                         "\"drucker_prager\", and law \"neo_hookean\" cannot start from their stress; of other laws "
-                        "linear_elastic, viscoelastic, drucker_prager, mohr_coulomb, modified_cam_clay, mu_i, von_mises or johnson_cook "
+                        "linear_elastic, viscoelastic, drucker_prager, mohr_coulomb, modified_cam_clay, cohesive_cam_clay, "
+                        "snow, mu_i, von_mises or johnson_cook "
                         "can\n"));
 }
 
