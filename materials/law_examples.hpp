@@ -91,6 +91,25 @@ inline ModifiedCamClay law_example()
   return law;
 }
 template <>
+inline CohesiveCamClay law_example()
+{
+  auto law = detail::elastic_example<CohesiveCamClay>(250);
+  law.critical_state_slope = 1.1;
+  law.cohesion_ratio = 0.3;
+  law.preconsolidation_pressure = 1e5;
+  law.hardening_factor = 2;
+  return law;
+}
+template <>
+inline Snow law_example()
+{
+  auto law = detail::elastic_example<Snow>(400);
+  law.critical_compression = 0.01;
+  law.critical_stretch = 0.004;
+  law.hardening = 5;
+  return law;
+}
+template <>
 inline MuI law_example()
 {
   auto law = detail::elastic_example<MuI>(1500);

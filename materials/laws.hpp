@@ -1,6 +1,7 @@
 #pragma once
 // The list of laws that a scene may name and that the contract tests check.  A new law is one line here.
 #include "core/type_list.hpp"
+#include "materials/cohesive_cam_clay.hpp"
 #include "materials/corotated.hpp"
 #include "materials/drucker_prager.hpp"
 #include "materials/elastic_herschel_bulkley.hpp"
@@ -14,6 +15,7 @@
 #include "materials/mu_i.hpp"
 #include "materials/neo_hookean.hpp"
 #include "materials/newtonian.hpp"
+#include "materials/snow.hpp"
 #include "materials/viscoelastic.hpp"
 #include "materials/von_mises.hpp"
 
@@ -29,6 +31,8 @@ using Laws = TypeList<
     DruckerPrager,
     MohrCoulomb,
     ModifiedCamClay,
+    CohesiveCamClay,
+    Snow,
     MuI,
     Newtonian,
     HerschelBulkley,

@@ -118,17 +118,26 @@ std::vector<ClosedForm> forms_of_soil(const Law& law, const TestPlan& plan, Real
 std::vector<ClosedForm> forms(const DruckerPrager& law, const TestPlan& plan, Real vertical) { return forms_of_soil(law, plan, vertical); }
 std::vector<ClosedForm> forms(const MohrCoulomb& law, const TestPlan& plan, Real vertical) { return forms_of_soil(law, plan, vertical); }
 
-/// At critical state p is known from the stress path.
-std::vector<ClosedForm> forms(const ModifiedCamClay& law, const TestPlan& plan, Real)
+/// At critical state p is known from the stress path, and q is M p.
+std::vector<ClosedForm> critical_state(std::string_view law, Real M, const TestPlan& plan)
 {
-  const Real M = law.critical_state_slope, P = plan.pressure;
-  const auto form = [](Real stress) { return std::vector<ClosedForm>{{fmt::format("{}, critical state", ModifiedCamClay::name), stress}}; };
+  const Real P = plan.pressure;
+  const auto form = [&](Real stress) { return std::vector<ClosedForm>{{fmt::format("{}, critical state", law), stress}}; };
   switch (plan.test) {
     case Laboratory::triaxial_compression: return form(3 * M * P / (3 - M));
     case Laboratory::triaxial_extension: return form(3 * M * P / (3 + M));
     case Laboratory::simple_shear: return form(M * P / root3);
     default: return {};
   }
+}
+std::vector<ClosedForm> forms(const ModifiedCamClay& law, const TestPlan& plan, Real)
+{
+  return critical_state(law.name, law.critical_state_slope, plan);
+}
+std::vector<ClosedForm> forms(const CohesiveCamClay& law, const TestPlan& plan, Real)
+{
+  const Real slope = law.critical_slope();
+  return slope < 3 ? critical_state(law.name, slope, plan) : std::vector<ClosedForm>{};
 }
 
 /// Strain at the end is plastic but for stress over modulus; the rate is taken as plastic.

@@ -76,6 +76,13 @@ class LawInLanesContract : public ::testing::Test {
       all.push_back(all.back());
       all.back().friction_angle = all.back().dilation_angle = 0;
     }
+    if constexpr (std::is_same_v<L, CohesiveCamClay>) {
+      all.push_back(law());  // falls apart soon
+      all.back().preconsolidation_pressure = 1e4;
+      all.push_back(testing::as_cohesive(sample<ModifiedCamClay>()));
+      all.push_back(all.back());
+      all.back().cohesion_ratio = 0.3;
+    }
     if constexpr (std::is_same_v<L, ModifiedCamClay>) {
       all.push_back(law());  // first yield is near zero pressure, on the dry side it opens
       all.back().preconsolidation_pressure = 1e3;

@@ -41,6 +41,7 @@ inline void add_options(Viscoelastic& law)
   law.third = PronyTerm{.share = 0.1, .time = 2};
 }
 inline void add_options(ElasticHerschelBulkley& law) { law.yield_stress = 2e4; }  // strains of a per cent come near it
+inline void add_options(Snow& law) { law.hardening_limit = 20; }
 inline void add_options(Newtonian& law) { law.volume_viscosity = 2; }
 inline void add_options(VonMises& law)  // without `rate`: yield() is that of slow loading
 {
@@ -63,6 +64,20 @@ L sample()
     add_options(static_cast<SoilStrength&>(law));
   else
     add_options(law);
+  return law;
+}
+
+/// Cohesive Cam clay without cohesion that is the given clay.
+inline CohesiveCamClay as_cohesive(const ModifiedCamClay& clay)
+{
+  CohesiveCamClay law;
+  law.density = clay.density;
+  law.shear_modulus = clay.shear_modulus;
+  law.critical_state_slope = clay.critical_state_slope;
+  law.preconsolidation_pressure = clay.preconsolidation_pressure;
+  law.compression_index = clay.compression_index;
+  law.swelling_index = clay.swelling_index;
+  law.reference_pressure = clay.reference_pressure;
   return law;
 }
 

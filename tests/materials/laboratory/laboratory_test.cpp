@@ -162,6 +162,12 @@ TEST(Laboratory, CriticalStateOfCamClayIsReachedInCompressionAndShear)
     TestPlan plan = plan_of(test, 3, 2000);  // hardening leads there slowly
     EXPECT_NEAR(peak_ratio(law, plan), 1, 0.02);
   }
+  CohesiveCamClay firn = testing::sample<CohesiveCamClay>();
+  firn.bulk_modulus = 1e9;  // small strains: Kirchhoff and Cauchy stress are nearly equal
+  firn.shear_modulus = 1e9;
+  firn.youngs_modulus.reset(), firn.poisson_ratio.reset();
+  TestPlan plan = plan_of(Laboratory::triaxial_compression, 0.03, 2000);
+  EXPECT_NEAR(peak_ratio(firn, plan), 1, 0.02);
 }
 
 TEST(Laboratory, MetalHardensAlongItsCurve)
