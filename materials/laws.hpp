@@ -8,11 +8,13 @@
 #include "materials/johnson_cook.hpp"
 #include "materials/linear_elastic.hpp"
 #include "materials/linear_first_piola.hpp"
+#include "materials/mechanical_threshold.hpp"
 #include "materials/modified_cam_clay.hpp"
 #include "materials/mohr_coulomb.hpp"
 #include "materials/mu_i.hpp"
 #include "materials/neo_hookean.hpp"
 #include "materials/newtonian.hpp"
+#include "materials/porous_ductile.hpp"
 #include "materials/viscoelastic.hpp"
 #include "materials/von_mises.hpp"
 
@@ -33,6 +35,8 @@ using Laws = TypeList<
     HerschelBulkley,
     VonMises,
     JohnsonCook,
+    MechanicalThreshold,
+    PorousDuctile,
     LinearFirstPiola>;
 // clang-format on
 

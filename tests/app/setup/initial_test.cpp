@@ -145,8 +145,8 @@ TEST_F(Initial, AnotherLawStartsFromTheStress)
   EXPECT_THAT(refusal(refused),
               HasSubstr("refused.yaml:5:10: error: bodies[0] \"bank\".material: the particles come from law "
                         "\"drucker_prager\", and law \"neo_hookean\" cannot start from their stress; of other laws "
-                        "linear_elastic, viscoelastic, drucker_prager, mohr_coulomb, modified_cam_clay, mu_i, von_mises or johnson_cook "
-                        "can\n"));
+                        "linear_elastic, viscoelastic, drucker_prager, mohr_coulomb, modified_cam_clay, mu_i, von_mises, johnson_cook, "
+                        "mechanical_threshold or porous_ductile can\n"));
 }
 
 /// Stiffer soil keeps its stress; rubber has the stress of its deformation, and says so.
