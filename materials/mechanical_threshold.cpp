@@ -132,6 +132,12 @@ struct ThresholdReturn {
   T tried = 0;                     ///< last plastic strain of the step that was tried
   Jet<T> work = T(0), end = T(0);  ///< plastic work and sigma_e that belong to it
 
+  /// The strength at the rate of negligible flow, which neither hardens nor heats.
+  T least_strength() const noexcept
+  {
+    const Real rate = negligible_flow / dt;
+    return strength_of<T>(metal, c, Jet<T>(ratio), {metal, Jet<T>(std::log(rate)), Jet<T>(rate), temperature}).value;
+  }
   /// Stress minus strength for the plastic strain of the step.
   ValueAndSlopeOf<T> operator()(const T& strain) noexcept
   {
@@ -214,7 +220,7 @@ std::optional<Mat3Of<T>> ThresholdMetal::update(const IncrementOf<T>& in, Memory
   ThresholdFlow<T> flow{.mises = mises, .ratio = memory.threshold_ratio};
   if (!in.elastic && any_of(mises > athermal_stress)) {
     ThresholdReturn<T> map{*this, c, J, J / growth, mises, stiffness, memory.threshold_ratio, temperature, in.dt};
-    if (const auto flows = mises > athermal_stress && map(T(negligible_flow)).value > 0; any_of(flows)) {
+    if (const auto flows = mises > athermal_stress && mises > map.least_strength(); any_of(flows)) {
       const ThresholdFlow<T> found = map.flow(in.stress, flows);
       flow = {where(flows, found.strain, 0), where(flows, found.mises, mises), where(flows, found.work, 0),
               where(flows, found.ratio, memory.threshold_ratio)};

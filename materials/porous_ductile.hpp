@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// Voids that open at inclusions, with a normal distribution over the strain of the matrix.  [Chu & Needleman 1980, J. Eng. Mater. Technol.
+/// Voids that open at inclusions, with a normal distribution over the strain of the matrix.  [Chu & Needleman 1980, J. Eng. Materials Technol.
 /// 102, 249]
 struct VoidNucleation {
   Real porosity{}, mean_strain{}, deviation{};
