@@ -1,12 +1,14 @@
 #pragma once
-// Pressure of strongly compressed solids.
+// Pressure of strongly compressed solids, their internal energy and the speed of sound in them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "core/fields.hpp"
 #include "core/simd.hpp"
+#include "materials/law.hpp"
 
 namespace talus {
 
@@ -67,5 +69,43 @@ struct MieGruneisenCurve {
     return bulk * (1 + s * at) / (margin * margin * margin);
   }
 };
+
+/// The internal energy of one step by the trapezoidal rule, which makes it linear in the pressure at the end.
+template <class T>
+struct EnergyStep {
+  T volume_change;  ///< change per initial volume
+  T rest;           ///< energy at the end without the work of the pressure at the end [J/m^3]
+
+  /// The elastic shear energy is known from the Kirchhoff stress `mises`, mises^2 / (6 G); the plastic work is the dissipated part.
+  EnergyStep(const IncrementOf<T>& in, const T& change, const T& energy_before, const T& mises_before, const T& mises,
+             const T& plastic_work, Real shear) noexcept
+      : volume_change(change)
+  {
+    const T stored = (mises - mises_before) * (mises + mises_before) / (6 * shear);
+    rest = energy_before + stored + plastic_work + (in.stress.trace() / 6 - in.viscous) * volume_change;
+  }
+  T energy(const T& pressure) const noexcept { return rest - 0.5 * pressure * volume_change; }
+  /// The pressure at the end.  A step that compresses by more than 1/gamma is not resolved; its pressure stays finite.
+  T pressure(const MieGruneisenCurve& curve, const T& compression) const noexcept
+  {
+    using std::max;
+    return (curve.cold_pressure<T>(compression) + curve.gamma * rest) / max(T(1 + 0.5 * curve.gamma * volume_change), T(0.5));
+  }
+};
+
+/// The modulus rho_0 c^2 = J^2 dp/de + 4 G / 3 - (Kirchhoff deviator)_nn along the direction n of compression, with the deviator of
+/// uniaxial strain of the same volume.  The deviator changes the energy as well, hence the factor 1 + gamma.  Without an equation of state
+/// the modulus is that of Drucker-Prager.
+template <class T>
+T wave_modulus(const std::type_identity_t<T>& J, Real bulk, Real shear, const std::optional<MieGruneisenCurve>& curve) noexcept
+{
+  using std::log, std::max, std::min;
+  const T shortening = max(T(-log(J)), T(0));
+  const Real deviator = 4 * shear / 3;
+  if (!curve)
+    return (bulk + deviator) * (1 + shortening);
+  const T volume = min(J, T(1));
+  return volume * volume * curve->stiffness<T>(1 - J) + deviator * (1 + (1 + curve->gamma) * shortening);
+}
 
 }  // namespace talus

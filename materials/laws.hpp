@@ -10,11 +10,13 @@
 #include "materials/johnson_cook.hpp"
 #include "materials/linear_elastic.hpp"
 #include "materials/linear_first_piola.hpp"
+#include "materials/mechanical_threshold.hpp"
 #include "materials/modified_cam_clay.hpp"
 #include "materials/mohr_coulomb.hpp"
 #include "materials/mu_i.hpp"
 #include "materials/neo_hookean.hpp"
 #include "materials/newtonian.hpp"
+#include "materials/porous_ductile.hpp"
 #include "materials/snow.hpp"
 #include "materials/viscoelastic.hpp"
 #include "materials/von_mises.hpp"
@@ -39,6 +41,8 @@ using Laws = TypeList<
     ElasticHerschelBulkley,
     VonMises,
     JohnsonCook,
+    MechanicalThreshold,
+    PorousDuctile,
     LinearFirstPiola>;
 // clang-format on
 

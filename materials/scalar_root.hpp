@@ -1,6 +1,7 @@
 #pragma once
-// The root of one equation with one unknown for any slope of the function, for return maps.
+// The root of one equation with one unknown for any slope of the function, and numbers with derivatives, for return maps.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <type_traits>
@@ -15,6 +16,86 @@ struct ValueAndSlopeOf {
   T value, slope;
 };
 using ValueAndSlope = ValueAndSlopeOf<Real>;
+
+/// A number and its derivatives by n unknowns, by the rules of differentiation.
+template <class T, std::size_t n = 1>
+struct Jet {
+  T value;
+  std::array<T, n> slope{};
+
+  template <std::convertible_to<T> Number>
+  Jet(const Number& constant) noexcept : value(constant)  // NOLINT(google-explicit-constructor): a constant has no slope
+  {}
+  /// Unknown number k.
+  static Jet unknown(const T& at, std::size_t k = 0) noexcept
+  {
+    Jet a(at);
+    a.slope[k] = 1;
+    return a;
+  }
+  /// f(a) from f and its slope at the value of a.
+  static Jet chain(const T& f, const T& df, const Jet& a) noexcept
+  {
+    Jet c(f);
+    for (std::size_t k = 0; k < n; ++k)
+      c.slope[k] = df * a.slope[k];
+    return c;
+  }
+  friend Jet operator+(const Jet& a, const Jet& b) noexcept
+  {
+    Jet c(a.value + b.value);
+    for (std::size_t k = 0; k < n; ++k)
+      c.slope[k] = a.slope[k] + b.slope[k];
+    return c;
+  }
+  friend Jet operator-(const Jet& a) noexcept { return chain(-a.value, -1, a); }
+  friend Jet operator-(const Jet& a, const Jet& b) noexcept { return a + (-b); }
+  friend Jet operator*(const Jet& a, const Jet& b) noexcept
+  {
+    Jet c(a.value * b.value);
+    for (std::size_t k = 0; k < n; ++k)
+      c.slope[k] = a.slope[k] * b.value + a.value * b.slope[k];
+    return c;
+  }
+  friend Jet operator/(const Jet& a, const Jet& b) noexcept
+  {
+    const T inverse = 1 / b.value;
+    Jet c(a.value * inverse);
+    for (std::size_t k = 0; k < n; ++k)
+      c.slope[k] = (a.slope[k] - c.value * b.slope[k]) * inverse;
+    return c;
+  }
+  friend Jet exp(const Jet& a) noexcept
+  {
+    using std::exp;
+    const T e = exp(a.value);
+    return chain(e, e, a);
+  }
+  friend Jet log(const Jet& a) noexcept
+  {
+    using std::log;
+    return chain(log(a.value), 1 / a.value, a);
+  }
+  friend Jet sqrt(const Jet& a) noexcept
+  {
+    using std::sqrt;
+    const T root = sqrt(a.value);
+    return chain(root, 0.5 / root, a);
+  }
+  /// The number, or a bound beyond which it does not change.
+  friend Jet clamped(const Jet& a, Real low, Real high) noexcept
+  {
+    using std::max, std::min;
+    return chain(min(max(a.value, T(low)), T(high)), where(a.value > low && a.value < high, T(1), T(0)), a);
+  }
+  friend Jet where(const MaskOf<T>& condition, const Jet& a, const Jet& b) noexcept
+  {
+    Jet c(where(condition, a.value, b.value));
+    for (std::size_t k = 0; k < n; ++k)
+      c.slope[k] = where(condition, a.slope[k], b.slope[k]);
+    return c;
+  }
+};
 
 /// The zero in (0, high] of a decreasing function f, with f(0) > 0 >= f(high).  Newton's method from `guess`.  If a step would leave the
 /// bracket, or is not at most half of the previous one (both happen with infinite slopes at zero), the bracket is halved by magnitude, so

@@ -54,8 +54,8 @@ struct BodySpec {
                  "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, 10, 14, ...; default by accuracy: 3, 4, 12 "
                  "in 2-D and 4, 4, 14 in 3-D"),
         optional("f_bar", &BodySpec::f_bar, any, "-",
-                 "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
-                 "johnson_cook, whose flow keeps the volume, false otherwise"),
+                 "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises, "
+                 "johnson_cook and mechanical_threshold, whose flow keeps the volume, false otherwise"),
         group("reference", &BodySpec::reference,
               "the configuration to which weights and gradients belong; default the present one, renewed in each step"),
         optional("velocity", &BodySpec::velocity, any, "m/s",

@@ -39,6 +39,8 @@ class LawInLanesContract : public ::testing::Test {
   {
     if constexpr (std::is_base_of_v<JohnsonCookMetal, L>)
       return L{static_cast<const JohnsonCookMetal&>(sample<JohnsonCook>())};
+    else if constexpr (std::is_base_of_v<ThresholdMetal, L>)
+      return L{static_cast<const ThresholdMetal&>(sample<MechanicalThreshold>())};
     else if constexpr (std::is_base_of_v<DruckerPrager, L>)
       return L{sample<DruckerPrager>()};
     else if constexpr (std::is_base_of_v<MohrCoulomb, L>)

@@ -145,7 +145,7 @@ TEST_F(Initial, AnotherLawStartsFromTheStress)
   EXPECT_THAT(refusal(refused),
               testing::ContainsRegex("refused.yaml:5:10: error: bodies\\[0\\] \"bank\".material: the particles come from law "
                                      "\"drucker_prager\", and law \"neo_hookean\" cannot start from their stress; of other laws "
-                                     "linear_elastic, viscoelastic, drucker_prager, .* or johnson_cook can\n"));
+                                     "linear_elastic, viscoelastic, drucker_prager, .* or [a-z_]+ can\n"));
 }
 
 /// Stiffer soil keeps its stress; rubber has the stress of its deformation, and says so.
