@@ -28,6 +28,35 @@ auto variables_of()
   });
   return all;
 }
+/// Particles i to i + 3 of the strip, or those up to its end.  L is final, and answers for several particles at once.
+template <int D, class L>
+[[gnu::flatten]] void update_pack(const L& law, const Material& material, const StressStrip<D>& strip, std::size_t i,
+                                  StressLanes& sums) noexcept
+{
+  const MatOf<D> rate = strip.L.load(i);
+  const SimdReal volume_before = strip.volume.load(i), shrinking = max(-SimdReal(rate.trace()), 0);
+  Mat3Of<SimdReal> F, velocity_gradient = embed(rate);
+  const SimdReal J = deform(strip, i, rate, F);
+  const Sym3Of<SimdReal> stored = strip.stress.load(i);
+  Mat3Of<SimdReal> stress = unpack(stored);
+  if (material.averages_volume)
+    average_volume(strip, i, J, F, velocity_gradient);
+  StateLanes<typename L::State> states{strip.history.first + i, strip.history.stride, lanes_of(strip, i)};
+  const SimdReal speed_of_waves = law.wave_speed(F, states);
+  const StepPressures pressures = find_pressures(material, strip, i, shrinking, speed_of_waves, stress);
+  const Mat3Of<SimdReal> after = law.update({F, velocity_gradient, stress, strip.dt, pressures.viscous, strip.elastic}, states);
+  take_answer<D>(after, material, strip, i, {rate, stored, J, volume_before, shrinking, speed_of_waves, pressures}, law.diffusivity(),
+                 sums);
+}
+
+template <int D, class L>
+StressSums update_strip(const L& law, const Material& material, const StressStrip<D>& strip) noexcept
+{
+  StressLanes lanes;
+  for (std::size_t i = 0; i < strip.n; i += pack_size)
+    update_pack(law, material, strip, i, lanes);
+  return lanes.total();
+}
 }  // namespace detail
 
 /// Whether particles of a law can begin with a stress.
@@ -108,11 +137,11 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   }
   StressSums update_stress(const Material& material, const StressStrip<2>& strip) const noexcept override
   {
-    return update_strip(material, strip);
+    return detail::update_strip(*this, material, strip);
   }
   StressSums update_stress(const Material& material, const StressStrip<3>& strip) const noexcept override
   {
-    return update_strip(material, strip);
+    return detail::update_strip(*this, material, strip);
   }
 
   Real wave_speed(const Mat3& F) const noexcept override { return law_.wave_speed(F, constants_); }
@@ -184,36 +213,6 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
       return law_.wave_speed(F, state, constants_);
     else
       return law_.wave_speed(F, constants_);
-  }
-
-  template <int D>
-  StressSums update_strip(const Material& material, const StressStrip<D>& strip) const noexcept
-  {
-    detail::StressLanes lanes;
-    for (std::size_t i = 0; i < strip.n; i += pack_size)
-      update_pack(material, strip, i, lanes);
-    return lanes.total();
-  }
-
-  /// Particles i to i + 3 of the strip, or those up to its end.
-  template <int D>
-  [[gnu::flatten]] void update_pack(const Material& material, const StressStrip<D>& strip, std::size_t i,
-                                    detail::StressLanes& sums) const noexcept
-  {
-    const MatOf<D> rate = strip.L.load(i);
-    const SimdReal volume_before = strip.volume.load(i), shrinking = max(-SimdReal(rate.trace()), 0);
-    Mat3Of<SimdReal> F, velocity_gradient = embed(rate);
-    const SimdReal J = detail::deform(strip, i, rate, F);
-    const Sym3Of<SimdReal> stored = strip.stress.load(i);
-    Mat3Of<SimdReal> stress = unpack(stored);
-    if (material.averages_volume)
-      detail::average_volume(strip, i, J, F, velocity_gradient);
-    StateLanes<State> states{strip.history.first + i, strip.history.stride, detail::lanes_of(strip, i)};
-    const SimdReal speed_of_waves = wave_speed(F, states);
-    const detail::StepPressures pressures = detail::find_pressures(material, strip, i, shrinking, speed_of_waves, stress);
-    const Mat3Of<SimdReal> after = update({F, velocity_gradient, stress, strip.dt, pressures.viscous, strip.elastic}, states);
-    detail::take_answer<D>(after, material, strip, i, {rate, stored, J, volume_before, shrinking, speed_of_waves, pressures}, diffusivity(),
-                           sums);
   }
 
   L law_;
