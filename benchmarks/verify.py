@@ -70,6 +70,7 @@ CASES = [
     "seepage",
     "strip_footing",
     "factor_of_safety",
+    "random_slope",
     "column_collapse",
     "cohesive_collapse",
     "accuracy",

@@ -7,9 +7,11 @@
 
 #include "app/setup/checks/shared_nodes.hpp"
 #include "app/setup/laws_in_force.hpp"
+#include "app/setup/parameter_fields.hpp"
 #include "app/setup/setup.hpp"
 #include "core/parallel/threads.hpp"
 #include "io/system/memory.hpp"
+#include "materials/interface/varied_law.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/quadrature.hpp"
 
@@ -69,6 +71,7 @@ class Seeder {
                               spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
     seeds_.bodies.push_back({spec.name, begin, end, spec.where});
     seeds_.materials.push_back(first_law(spec, begin, end));
+    set_parameters_in_space(seeds_.particles, ranks_, errors_, seeds_.materials.back());
     set_velocity(spec, mesh_, ranks_, begin, end, errors_, seeds_.particles);
   }
 
@@ -99,6 +102,8 @@ class Seeder {
                   fmt::format("the particles come from law \"{}\", and law \"{}\" cannot start from their stress; of other laws {} can",
                               there.law().name(), material_here.law().name(), or_list(laws_that_start_from_stress())));
     }
+    if (material_here.law().name() != there.law().name() || !varies_alike(material_here.law(), there.law()))
+      set_parameters_in_space(seeds_.particles, ranks_, errors_, material_here);
     taken_.push_back({seeds_.bodies.size(), std::string(there.law().name()), rows});
     initial.origin.bodies.push_back({spec.name, source.name, source.size()});
     seeds_.bodies.push_back(body);

@@ -13,6 +13,7 @@
 #include "io/scene/scene_start_state.hpp"
 #include "io/scene/shape.hpp"
 #include "materials/interface/any_law.hpp"
+#include "materials/variation/parameter_variation.hpp"
 #include "solver/options/reference_options.hpp"
 
 namespace talus {
@@ -21,12 +22,16 @@ struct MaterialSpec {
   std::string name;
   std::optional<BulkViscosity> bulk_viscosity;
   AnyLaw law;
+  std::vector<ParameterVariation> variation;
   SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &MaterialSpec::name, any, "-", "bodies refer to it"),
                       group("bulk_viscosity", &MaterialSpec::bulk_viscosity,
                             "artificial viscous pressure where the volume shrinks, against ringing behind shocks; default none"),
+                      optional_list("variation", &MaterialSpec::variation,
+                                    "parameters of the law that vary in space as random fields; each particle has the value of the place "
+                                    "where it gets the material"),
                       alternative("law", &MaterialSpec::law, "constitutive law; its parameters are keys of the same mapping")};
   }
 };

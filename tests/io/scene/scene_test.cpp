@@ -319,6 +319,27 @@ TEST(Scene, ReadsWhenItsStateIsKept)
   EXPECT_EQ(usual.keep, 2);
 }
 
+TEST(Scene, ReadsHowParametersVary)
+{
+  const auto variation = scene("plane.yaml").materials.at(1).variation;
+  ASSERT_EQ(variation.size(), 2U);
+  EXPECT_EQ(variation[0].parameter, "shear_modulus");
+  EXPECT_EQ(variation[0].distribution, Distribution::normal);
+  EXPECT_EQ(variation[0].coefficient_of_variation, 0.1);
+  EXPECT_THAT(variation[0].correlation_length, ElementsAre(40, 4));
+  EXPECT_EQ(variation[0].covariance, Covariance::gaussian);
+  EXPECT_EQ(variation[0].seed, 3);
+  EXPECT_EQ(variation[0].minimum, 1e9);
+  EXPECT_EQ(variation[0].maximum, 3e9);
+  EXPECT_EQ(variation[1].distribution, Distribution::lognormal);
+  EXPECT_EQ(variation[1].covariance, Covariance::exponential);
+  EXPECT_EQ(variation[1].seed, 1);
+  EXPECT_EQ(variation[1].correlated_with, "shear_modulus");
+  EXPECT_EQ(variation[1].correlation, 0.5);
+  EXPECT_EQ(variation[1].trend, "1 + 0.1 * y");
+  EXPECT_FALSE(variation[1].minimum || variation[1].maximum);
+}
+
 TEST(Scene, KnowsWhereEverythingWasAskedFor)
 {
   const Scene s = scene("plane.yaml");
