@@ -4,10 +4,10 @@
 #include <numbers>
 #include <string_view>
 
-#include "materials/hencky_plastic.hpp"
-#include "materials/power_near.hpp"
-#include "materials/radial_return.hpp"
-#include "materials/scalar_root.hpp"
+#include "materials/parts/hencky_plastic.hpp"
+#include "materials/parts/power_near.hpp"
+#include "materials/parts/radial_return.hpp"
+#include "materials/parts/scalar_root.hpp"
 
 namespace talus {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "materials/weakly_compressible.hpp"
+#include "materials/parts/weakly_compressible.hpp"
 
 namespace talus {
 

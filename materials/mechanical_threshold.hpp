@@ -6,9 +6,9 @@
 #include <variant>
 
 #include "core/type_list.hpp"
-#include "materials/elasticity.hpp"
-#include "materials/equation_of_state.hpp"
-#include "materials/law.hpp"
+#include "materials/parts/elasticity.hpp"
+#include "materials/parts/equation_of_state.hpp"
+#include "materials/parts/law.hpp"
 
 namespace talus {
 

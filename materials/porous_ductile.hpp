@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "materials/hencky_plastic.hpp"
+#include "materials/parts/hencky_plastic.hpp"
 
 namespace talus {
 

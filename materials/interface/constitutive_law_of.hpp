@@ -8,8 +8,8 @@
 #include "core/strip_column.hpp"
 #include "core/type_list.hpp"
 #include "materials/interface/stress_pack.hpp"
-#include "materials/strength.hpp"
-#include "materials/weakly_compressible.hpp"
+#include "materials/parts/strength.hpp"
+#include "materials/parts/weakly_compressible.hpp"
 
 namespace talus {
 

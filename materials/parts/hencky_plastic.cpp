@@ -1,4 +1,4 @@
-#include "materials/hencky_plastic.hpp"
+#include "materials/parts/hencky_plastic.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "materials/logarithm.hpp"
-#include "materials/radial_return.hpp"
+#include "materials/parts/logarithm.hpp"
+#include "materials/parts/radial_return.hpp"
 
 namespace talus {
 

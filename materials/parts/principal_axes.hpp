@@ -8,7 +8,7 @@
 
 #include "core/simd.hpp"
 #include "core/tensor.hpp"
-#include "materials/power_near.hpp"
+#include "materials/parts/power_near.hpp"
 
 namespace talus {
 

@@ -8,7 +8,7 @@
 
 #include "core/fields.hpp"
 #include "core/simd.hpp"
-#include "materials/law.hpp"
+#include "materials/parts/law.hpp"
 
 namespace talus {
 

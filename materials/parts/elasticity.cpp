@@ -1,4 +1,4 @@
-#include "materials/elasticity.hpp"
+#include "materials/parts/elasticity.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "core/type_list.hpp"
-#include "materials/law.hpp"
+#include "materials/parts/law.hpp"
 
 namespace talus {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "materials/law.hpp"
-#include "materials/logarithm.hpp"
-#include "materials/power_near.hpp"
+#include "materials/parts/law.hpp"
+#include "materials/parts/logarithm.hpp"
+#include "materials/parts/power_near.hpp"
 
 namespace talus {
 

@@ -100,14 +100,6 @@ Sym3 in_principal_axes(const Sym3& A, F&& f) noexcept
   const Mat3& V = axes.eigenvectors();
   return pack(V * axes.eigenvalues().unaryExpr(f).asDiagonal() * V.transpose());
 }
-[[gnu::noinline]] inline Sym3 log1p_by_axes(const Sym3& B) noexcept
-{
-  return in_principal_axes(B, [](Real x) { return std::log1p(x); });
-}
-[[gnu::noinline]] inline Sym3 expm1_by_axes(const Sym3& E) noexcept
-{
-  return in_principal_axes(E, [](Real x) { return std::expm1(x); });
-}
 /// The tensor whose lanes are f of the tensor in each lane.
 template <class F>
 Sym3Of<SimdReal> tensor_in_each_lane(const Sym3Of<SimdReal>& all, F&& f) noexcept
@@ -123,8 +115,10 @@ Sym3Of<SimdReal> tensor_in_each_lane(const Sym3Of<SimdReal>& all, F&& f) noexcep
   }
   return result;
 }
-[[gnu::noinline]] inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept;
-[[gnu::noinline]] inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept;
+template <class T>
+[[gnu::noinline]] Sym3Of<T> log1p_by_axes(const Sym3Of<T>& B) noexcept;
+template <class T>
+[[gnu::noinline]] Sym3Of<T> expm1_by_axes(const Sym3Of<T>& E) noexcept;
 
 }  // namespace detail
 
@@ -140,7 +134,7 @@ Sym3Of<typename Expression::Scalar> log1p(const Eigen::MatrixBase<Expression>& e
   const Sym3Of<T> X = scale_and_shift(scale, B, -mean * scale);
   const T size = squared_norm(X);
   if (!all_of(mean > -1 && size <= series_radius * series_radius))
-    return detail::log1p_by_axes(B);
+    return detail::log1p_by_axes<T>(B);
   const T volumetric = log1p(mean);
   if (all_of(size <= short_series_radius * short_series_radius))
     return add_diagonal(detail::trace_free_series<8>(X, detail::logarithm_series), volumetric);
@@ -158,7 +152,7 @@ Sym3Of<typename Expression::Scalar> expm1(const Eigen::MatrixBase<Expression>& e
   const Sym3Of<T> X = add_diagonal(E, -mean);
   const T size = squared_norm(X);
   if (!all_of(size <= series_radius * series_radius))
-    return detail::expm1_by_axes(E);
+    return detail::expm1_by_axes<T>(E);
   const T volumetric = expm1(mean);
   if (all_of(size <= short_series_radius * short_series_radius))
     return scale_and_shift(1 + volumetric, detail::trace_free_series<6>(X, detail::exponential_series), volumetric);
@@ -167,13 +161,21 @@ Sym3Of<typename Expression::Scalar> expm1(const Eigen::MatrixBase<Expression>& e
 
 namespace detail {
 // If one lane is beyond the radius of the series, each lane is treated separately, as others may be within.
-[[gnu::noinline]] inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept
+template <class T>
+Sym3Of<T> log1p_by_axes(const Sym3Of<T>& B) noexcept
 {
-  return tensor_in_each_lane(B, [](const Sym3& one) { return log1p(one); });
+  if constexpr (std::is_same_v<T, Real>)
+    return in_principal_axes(B, [](Real x) { return std::log1p(x); });
+  else
+    return tensor_in_each_lane(B, [](const Sym3& one) { return log1p(one); });
 }
-[[gnu::noinline]] inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept
+template <class T>
+Sym3Of<T> expm1_by_axes(const Sym3Of<T>& E) noexcept
 {
-  return tensor_in_each_lane(E, [](const Sym3& one) { return expm1(one); });
+  if constexpr (std::is_same_v<T, Real>)
+    return in_principal_axes(E, [](Real x) { return std::expm1(x); });
+  else
+    return tensor_in_each_lane(E, [](const Sym3& one) { return expm1(one); });
 }
 }  // namespace detail
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include "materials/law.hpp"
-#include "materials/logarithm.hpp"
+#include "materials/parts/law.hpp"
+#include "materials/parts/logarithm.hpp"
 
 namespace talus {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "materials/elasticity.hpp"
-#include "materials/law.hpp"
+#include "materials/parts/elasticity.hpp"
+#include "materials/parts/law.hpp"
 
 namespace talus {
 
