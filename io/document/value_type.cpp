@@ -9,7 +9,6 @@ namespace talus {
 
 template const ValueType& value_type<std::string>();
 template const ValueType& value_type<std::vector<std::array<Real, 2>>>();
-template const ValueType& value_type<std::vector<Node>>();
 
 void detail::add_field(StructType& type, FieldType row, const ValueType& value, const void* member)
 {
