@@ -24,13 +24,15 @@ class Field : public testing::TestWithParam<Covariance> {};
 TEST_P(Field, HasMeanVarianceAndCovarianceOverSeeds)
 {
   const auto far = distances();
-  Real mean = 0, square = 0, fourth = 0;
+  Real mean = 0, square = 0, fourth = 0, at_zero = 0, square_at_zero = 0;
   int outside = 0;
   std::vector<Real> product(far.size(), 0);
   for (int seed = 0; seed < seeds; ++seed) {
     const RandomField field(GetParam(), lengths, static_cast<std::uint64_t>(seed), "cohesion");
     const Real here = field(origin);
     mean += here / seeds, square += here * here / seeds, fourth += here * here * here * here / seeds;
+    const Real there = field(Vec3::Zero());  // where waves without phases would all be at their crest
+    at_zero += there / seeds, square_at_zero += there * there / seeds;
     outside += std::abs(here) > 1.959964 ? 1 : 0;
     for (std::size_t i = 0; i < far.size(); ++i)
       product[i] += here * field(origin + far[i]) / seeds;
@@ -38,6 +40,8 @@ TEST_P(Field, HasMeanVarianceAndCovarianceOverSeeds)
   const Real error = 1 / std::sqrt(Real{seeds});
   EXPECT_NEAR(mean, 0, bound * error);
   EXPECT_NEAR(square, 1, bound * error * std::sqrt(Real{2}));
+  EXPECT_NEAR(at_zero, 0, bound * error);
+  EXPECT_NEAR(square_at_zero, 1, bound * error * std::sqrt(Real{2}));
   EXPECT_NEAR(fourth, 3, bound * error * std::sqrt(Real{96}));  // variance of the fourth power of a Gaussian variable
   EXPECT_NEAR(outside / Real{seeds}, 0.05, bound * error * std::sqrt(0.05 * 0.95));
   for (std::size_t i = 0; i < far.size(); ++i) {
