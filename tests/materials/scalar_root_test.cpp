@@ -62,5 +62,38 @@ TEST(PositiveRoot, EndsWhereRoundingHidesTheSign)
   EXPECT_LE(asked, 20);
 }
 
+TEST(Jet, DifferentiatesByEveryUnknown)
+{
+  using N = Jet<Real, 2>;
+  const Real a = 0.7, b = 1.3;
+  const N x = N::unknown(a, 0), y = N::unknown(b, 1);
+  const N f = exp(x * y) / (x + 2) - 3 * sqrt(y) + log(x) * -y;
+  EXPECT_NEAR(f.value, std::exp(a * b) / (a + 2) - 3 * std::sqrt(b) - std::log(a) * b, 1e-14);
+  EXPECT_NEAR(f.slope[0], std::exp(a * b) * (b / (a + 2) - 1 / ((a + 2) * (a + 2))) - b / a, 1e-14);
+  EXPECT_NEAR(f.slope[1], std::exp(a * b) * a / (a + 2) - 1.5 / std::sqrt(b) - std::log(a), 1e-14);
+  EXPECT_EQ(N(5).slope[0], 0);
+}
+
+TEST(Jet, HasNoSlopeBeyondABound)
+{
+  using N = Jet<Real>;
+  for (const auto& [at, value, slope] : {std::tuple{-1.0, 0.0, 0.0}, {0.4, 0.4, 1.0}, {3.0, 1.0, 0.0}}) {
+    const N c = clamped(N::unknown(at), 0, 1);
+    EXPECT_EQ(c.value, value);
+    EXPECT_EQ(c.slope[0], slope);
+  }
+}
+
+TEST(Jet, DifferentiatesInLanes)
+{
+  using N = Jet<SimdReal>;
+  const N x = N::unknown(Pack{1, 2, 3, 4}), f = where(x.value > 2, x * x, N(SimdReal(7)));
+  for (int lane = 0; lane < pack_size; ++lane) {
+    const Real a = lane + 1;
+    EXPECT_EQ(f.value[lane], a > 2 ? a * a : 7);
+    EXPECT_EQ(f.slope[0][lane], a > 2 ? 2 * a : 0);
+  }
+}
+
 }  // namespace
 }  // namespace talus::scalar_root_test
