@@ -86,7 +86,7 @@ stage_docs() {
 # Fourteen more, over half of the processor time, are left to the nightly stage `traps`, which runs all: other cases judge the same parts of the code, the
 # orders of convergence (manufactured_solution, vibrating_bar), bending and stress (cantilever, plate_with_hole), soil that slides (slope_failure_2d, column_collapse, sliding_block), soil that fails
 # (strip_footing, factor_of_safety), contact (contact, rigid_bodies) and fluids (dam_break).
-nightly_cases=(generalized_vortex slope_failure_3d cohesive_collapse granular_chute infinite_slope contact_bodies floating_block fluid_layer pulled_bar wedge cook_membrane irregular_bar seepage saturated_soil equilibrium)
+nightly_cases=(generalized_vortex slope_failure_3d cohesive_collapse granular_chute infinite_slope contact_bodies floating_block fluid_layer pulled_bar wedge cook_membrane irregular_bar seepage saturated_soil equilibrium arrest random_slope snow_block)
 stage_verify() {
   tools/verify.sh --program "$PWD/$talus" --level quick --judged --but "${nightly_cases[@]}" --digits 2 --jobs "$jobs" --regression --out build/verify
 }
