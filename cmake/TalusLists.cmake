@@ -31,11 +31,12 @@ endfunction()
 # Laws behind the interface ConstitutiveLaw.
 function(talus_compile_laws target)
   talus_compile_each(${target} materials/laws.hpp [[
-#include "materials/interface/constitutive_law_of.hpp"
+#include "materials/interface/varied_law_of.hpp"
 
 namespace talus {
 
 template std::shared_ptr<const ConstitutiveLaw> constitutive_law(const @type@&);
+template std::shared_ptr<const VariedLaw> varied_law_of(const @type@&, const std::vector<ParameterVariation>&);
 template const LawDescription& law_description<@type@>() noexcept;
 
 }  // namespace talus

@@ -4,8 +4,8 @@
 
 #include "materials/cohesive_cam_clay.hpp"
 #include "materials/modified_cam_clay.hpp"
-#include "materials/radial_return.hpp"
-#include "materials/scalar_root.hpp"
+#include "materials/parts/radial_return.hpp"
+#include "materials/parts/scalar_root.hpp"
 
 namespace talus {
 

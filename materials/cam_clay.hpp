@@ -1,6 +1,6 @@
 #pragma once
 // What the laws of the Cam clay family have in common: history, elasticity and hardening as curves, an ellipse, and the return to it.
-#include "materials/law.hpp"
+#include "materials/parts/law.hpp"
 
 namespace talus {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "materials/cam_clay.hpp"
-#include "materials/elasticity.hpp"
+#include "materials/parts/elasticity.hpp"
 
 namespace talus {
 

@@ -2,9 +2,9 @@
 // Hooke's law in the corotated frame with a volume term that resists inversion: the elasticity of many graphics codes.
 #include <string_view>
 
-#include "materials/elasticity.hpp"
-#include "materials/law.hpp"
-#include "materials/logarithm.hpp"
+#include "materials/parts/elasticity.hpp"
+#include "materials/parts/law.hpp"
+#include "materials/parts/logarithm.hpp"
 
 namespace talus {
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "materials/hencky_plastic.hpp"
-#include "materials/logarithm.hpp"
-#include "materials/softening_length.hpp"
+#include "materials/parts/hencky_plastic.hpp"
+#include "materials/parts/logarithm.hpp"
+#include "materials/parts/softening_length.hpp"
 
 namespace talus {
 

@@ -8,14 +8,14 @@
 #include <string_view>
 #include <vector>
 
-#include "materials/weakly_compressible.hpp"
+#include "materials/parts/weakly_compressible.hpp"
 
 namespace talus {
 
 /// stress = -p(J) I + 2 eta dev(D),    eta = k g^(n-1) + tau_y (1 - exp(-m g)) / g,    g = sqrt(2 dev(D):dev(D)).
 /// [Herschel & Bulkley 1926, Kolloid-Z. 39, 291; Papanastasiou 1987, J. Rheol. 31, 385].  Below yield the fluid creeps with the viscosity
 /// tau_y m.  The viscosity of the power law is constant below g = 1/m if n < 1, and above g = highest_rate if n > 1, so that the viscosity
-/// and with it the step is bounded.  n = 1 is Bingham's fluid.
+/// and with it the step is bounded.  n = 1 is Bingham's fluid.  For what has to stop there is ElasticHerschelBulkley.
 struct HerschelBulkley : WeaklyCompressible {
   static constexpr std::string_view name = "herschel_bulkley";
   static constexpr std::string_view summary =

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "materials/radial_return.hpp"
-#include "materials/scalar_root.hpp"
+#include "materials/parts/radial_return.hpp"
+#include "materials/parts/scalar_root.hpp"
 
 namespace talus {
 
@@ -118,29 +118,6 @@ struct JohnsonCookReturn {
   }
 };
 
-/// The internal energy of one step by the trapezoidal rule, which makes it linear in the pressure at the end.
-template <class T>
-struct EnergyStep {
-  T volume_change;  ///< change per initial volume
-  T rest;           ///< energy at the end without the work of the pressure at the end [J/m^3]
-
-  /// The elastic shear energy is known from the Kirchhoff stress `mises`, mises^2 / (6 G); the plastic work is the dissipated part.
-  EnergyStep(const IncrementOf<T>& in, const T& change, const T& energy_before, const T& mises_before, const T& mises,
-             const T& plastic_work, Real shear) noexcept
-      : volume_change(change)
-  {
-    const T stored = (mises - mises_before) * (mises + mises_before) / (6 * shear);
-    rest = energy_before + stored + plastic_work + (in.stress.trace() / 6 - in.viscous) * volume_change;
-  }
-  T energy(const T& pressure) const noexcept { return rest - 0.5 * pressure * volume_change; }
-  /// The pressure at the end.  A step that compresses by more than 1/gamma is not resolved; its pressure stays finite.
-  T pressure(const MieGruneisenCurve& curve, const T& compression) const noexcept
-  {
-    using std::max;
-    return (curve.cold_pressure<T>(compression) + curve.gamma * rest) / max(T(1 + 0.5 * curve.gamma * volume_change), T(0.5));
-  }
-};
-
 }  // namespace
 
 template <class T>
@@ -251,19 +228,11 @@ void JohnsonCookMetal::prestress(const Mat3& stress, Sym3& elastic_left) const n
   elastic_left = elastic_left_of(dev(stress), c.shear, volume_strain);
 }
 
-/// The modulus rho_0 c^2 = J^2 dp/de + 4 G / 3 - (Kirchhoff deviator)_nn along the direction n of compression, with the deviator of
-/// uniaxial strain of the same volume.  The deviator changes the energy as well, hence the factor 1 + gamma.  Without an equation of state
-/// the modulus is that of Drucker-Prager.
 template <class T>
 T JohnsonCookMetal::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
 {
-  using std::log, std::max, std::min, std::sqrt;
-  const T J = F.determinant(), shortening = max(T(-log(J)), T(0));
-  const Real shear = 4 * c.shear / 3;
-  if (!c.curve)
-    return sqrt(T((c.bulk + shear) * (1 + shortening) / density));
-  const T volume = min(J, T(1));
-  return sqrt(T((volume * volume * c.curve->stiffness<T>(1 - J) + shear * (1 + (1 + c.curve->gamma) * shortening)) / density));
+  using std::sqrt;
+  return sqrt(T(wave_modulus<T>(F.determinant(), c.bulk, c.shear, c.curve) / density));
 }
 template Real JohnsonCookMetal::wave_speed(const Mat3&, const Constants&) const noexcept;
 template SimdReal JohnsonCookMetal::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;

@@ -6,10 +6,10 @@
 #include <variant>
 
 #include "core/type_list.hpp"
-#include "materials/elasticity.hpp"
-#include "materials/equation_of_state.hpp"
-#include "materials/law.hpp"
-#include "materials/power_near.hpp"
+#include "materials/parts/elasticity.hpp"
+#include "materials/parts/equation_of_state.hpp"
+#include "materials/parts/law.hpp"
+#include "materials/parts/power_near.hpp"
 
 namespace talus {
 

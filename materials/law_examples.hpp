@@ -142,6 +142,15 @@ inline HerschelBulkley law_example()
   return law;
 }
 template <>
+inline ElasticHerschelBulkley law_example()  // fresh concrete of low slump
+{
+  auto law = detail::elastic_example<ElasticHerschelBulkley>(2300);
+  law.yield_stress = 2e3;
+  law.consistency = 150;
+  law.flow_index = 0.8;
+  return law;
+}
+template <>
 inline VonMises law_example()
 {
   auto law = detail::elastic_example<VonMises>();
@@ -161,6 +170,37 @@ inline JohnsonCook law_example()
   law.room_temperature = 294;
   law.melting_temperature = 1400;
   law.specific_heat = 0.02;  // heating of some kelvin per per cent of plastic strain, in spite of the low strength
+  return law;
+}
+
+template <>
+inline MechanicalThreshold law_example()
+{
+  auto law = detail::elastic_example<MechanicalThreshold>();
+  law.athermal_stress = 2e4;
+  law.shear_at_zero_kelvin = 4e6;
+  law.shear_loss = 3e5;
+  law.shear_temperature = 180;
+  law.boltzmann_over_burgers_cubed = 70;
+  law.activation_energy = 1.6;
+  law.activation_rate = 1e7;
+  law.activation_p = 2.0 / 3;
+  law.activation_q = 1;
+  law.hardening_modulus = 2e5;
+  law.hardening_shape = 2;
+  law.saturation_stress = 7e4;
+  law.saturation_energy = 0.26;
+  law.saturation_rate = 1e7;
+  law.specific_heat = 0.02;
+  law.initial_temperature = 294;
+  return law;
+}
+template <>
+inline PorousDuctile law_example()
+{
+  auto law = detail::elastic_example<PorousDuctile>();
+  law.yield_stress = 4e4;
+  law.initial_porosity = 0.01;
   return law;
 }
 

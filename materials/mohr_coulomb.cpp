@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include "materials/principal_axes.hpp"
-#include "materials/radial_return.hpp"
+#include "materials/parts/principal_axes.hpp"
+#include "materials/parts/radial_return.hpp"
 
 namespace talus {
 

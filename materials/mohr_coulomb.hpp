@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "materials/hencky_plastic.hpp"
-#include "materials/softening_length.hpp"
+#include "materials/parts/hencky_plastic.hpp"
+#include "materials/parts/softening_length.hpp"
 
 namespace talus {
 

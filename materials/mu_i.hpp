@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "materials/hencky_plastic.hpp"
-#include "materials/logarithm.hpp"
+#include "materials/parts/hencky_plastic.hpp"
+#include "materials/parts/logarithm.hpp"
 
 namespace talus {
 

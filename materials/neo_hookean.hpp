@@ -2,9 +2,9 @@
 // The compressible rubber of textbooks: stress from the deformation gradient only.
 #include <string_view>
 
-#include "materials/elasticity.hpp"
-#include "materials/law.hpp"
-#include "materials/logarithm.hpp"
+#include "materials/parts/elasticity.hpp"
+#include "materials/parts/law.hpp"
+#include "materials/parts/logarithm.hpp"
 
 namespace talus {
 

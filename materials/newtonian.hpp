@@ -2,7 +2,7 @@
 // Water, oil and slurry: a weakly compressible fluid of constant viscosity.
 #include <string_view>
 
-#include "materials/weakly_compressible.hpp"
+#include "materials/parts/weakly_compressible.hpp"
 
 namespace talus {
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "materials/elasticity.hpp"
-#include "materials/principal_axes.hpp"
-#include "materials/radial_return.hpp"
+#include "materials/parts/elasticity.hpp"
+#include "materials/parts/principal_axes.hpp"
+#include "materials/parts/radial_return.hpp"
 
 namespace talus {
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "materials/hencky_plastic.hpp"
-#include "materials/radial_return.hpp"
+#include "materials/parts/hencky_plastic.hpp"
+#include "materials/parts/radial_return.hpp"
 
 namespace talus {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "materials/radial_return.hpp"
-#include "materials/scalar_root.hpp"
+#include "materials/parts/radial_return.hpp"
+#include "materials/parts/scalar_root.hpp"
 
 namespace talus {
 

@@ -3,9 +3,9 @@
 #include <optional>
 #include <string_view>
 
-#include "materials/hencky_plastic.hpp"
-#include "materials/power_near.hpp"
-#include "materials/softening_length.hpp"
+#include "materials/parts/hencky_plastic.hpp"
+#include "materials/parts/power_near.hpp"
+#include "materials/parts/softening_length.hpp"
 
 namespace talus {
 

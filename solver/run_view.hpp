@@ -18,7 +18,7 @@ struct RunView {
   const State<D>& state;
   const CellOrder& order;  ///< order of the particles of `state`
   std::span<const VelocityField<D>> fields;
-  std::string_view stage_name;
+  std::string_view stage_name, stage_kind;
   std::int64_t migrated;          ///< number of particles that moved between this rank and others so far
   std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
   /// Loads that acted on particles in the last step, of each group of particles in each block (ParticleStrips::key()); empty in
@@ -42,6 +42,7 @@ RunView<D> view_of(const Model<D>& m, const Stage& stage)
           .order = m.work.order,
           .fields = m.work.fields,
           .stage_name = stage.name,
+          .stage_kind = stage.kind,
           .migrated = m.work.migration.moved(),
           .nodes_as_corners = m.transfer->nodes_as_corners(m.problem.own),
           .loads = m.work.load_sums,

@@ -103,8 +103,10 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
                    .ramp_shape = stage.ramp_shape,
                    .elastic = stage.elastic,
                    .seeks_rest = stage.seeks_rest(),
-                   .flows = m.problem.flow.any() && !stage.is_at_rest()};
+                   .flows = m.problem.flow.any() && stage.lets_water_flow()};
   m.state.solve = {};
+  if (m.work.flow)
+    m.work.flow->begin_stage();
   m.state.boundary.begin_stage(stage.is_at_rest(), m.state.clock.time);
   // Under a stress of the start all of gravity acts, however it grows afterwards.
   const Real time = m.state.clock.time, ramp = stage.start_stress.empty() ? m.state.stage.ramp(time) : 1;
@@ -159,6 +161,17 @@ void show(Model<D>& m, const Watch<D>& watch, RunEvent event)
   drop_copy(m);
 }
 
+/// Why the pore pressure of the last step cannot be trusted, if so.
+std::optional<std::string> pressure_not_found(const FlowLedger& flow)
+{
+  if (flow.found)
+    return std::nullopt;
+  return fmt::format(
+      "the pore pressure of the last step was not found: {:.3g} of the right-hand side were left after {} iterations; the state "
+      "has become unsound, or permeabilities differ too much",
+      flow.residual, flow.iterations);
+}
+
 /// Why the run cannot take its next step, if so.
 template <int D>
 std::optional<std::string> reason_to_stop(Model<D>& m, const Stage& stage, const StepLimits& limits)
@@ -177,11 +190,8 @@ std::optional<std::string> reason_to_stop(Model<D>& m, const Stage& stage, const
             "the rigid body \"{}\" has left the mesh at ({:.6g}): make the mesh larger, put a boundary condition where it "
             "leaves, or let it go with on_exit: delete",
             m.problem.rigid.bodies[r].name, fmt::join(x.begin(), x.end(), ", "));
-  if (!m.state.flow.found)
-    return fmt::format(
-        "the pore pressure of the last step was not found: {:.3g} of the right-hand side were left after {} iterations; the state "
-        "has become unsound, or permeabilities differ too much",
-        m.state.flow.residual, m.state.flow.iterations);
+  if (auto why = pressure_not_found(m.state.flow))
+    return why;
   return exceeded_limit(m, Look::between_steps);
 }
 
@@ -266,8 +276,9 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
   }
   const Real begin = m.state.stage.begin;
   const LimitMonitor before = m.state.monitor;
-  if (const auto why = exceeded_limit(m, Look::at_end_of_stage))
-    abort_run(m, before, watch, *why);
+  for (const auto& why : {pressure_not_found(m.state.flow), exceeded_limit(m, Look::at_end_of_stage)})
+    if (why)
+      abort_run(m, before, watch, *why);
   const Totals<D> now = totals(m);
   const StageResult result{stage.name,
                            stage.kind,

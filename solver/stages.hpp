@@ -27,11 +27,14 @@ struct Stage {
   std::vector<StartStress> start_stress{};          ///< of each body; empty: they begin with the stress that they have
   std::vector<Index> start_stress_bodies{};         ///< that begin with it, by their numbers; none: all
   bool reset_displacement = false;
+  bool holds_pore_pressure = false;
   SourceLocation where;
   /// Whether it ends in equilibrium, or is damped.
   bool seeks_rest() const noexcept { return residual || equilibrium || damping > 0; }
-  /// Whether absorbing boundaries hold, and water stands still.
+  /// Whether absorbing boundaries hold.
   bool is_at_rest() const noexcept { return residual || equilibrium; }
+  /// Whether water flows through pores; else it keeps its pressures.
+  bool lets_water_flow() const noexcept { return !is_at_rest() && !holds_pore_pressure; }
 };
 
 struct StepLimits {

@@ -22,7 +22,7 @@ class Layers(unittest.TestCase):
 
     def test_a_folder_does_not_see_what_is_above_or_beside(self):
         self.fails("core/types.hpp", '#include "mesh/mesh.hpp"')
-        self.fails("materials/law.hpp", '#include "mesh/mesh.hpp"')
+        self.fails("materials/parts/law.hpp", '#include "mesh/mesh.hpp"')
         self.fails("io/scene/scene.cpp", '#include "solver/model/model.hpp"')
         self.fails("io/document/document.cpp", '#include "io/scene/scene.hpp"')
         self.fails("app/setup/setup.cpp", '#include "app/cli/cli.hpp"')

@@ -44,6 +44,8 @@ for name in "${scenes[@]}"; do
   build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
   frame=last range=last
   [ "$name" = cantilever ] && frame=14 range=whole  # t = 0.7 s, its lowest point; at the end it is back up
+  [ "$name" = honey ] && frame=5  # the thread still falls into the puddle
+  [ "$name" = jelly ] && frame=4 range=whole  # the cube at its lowest
   render "$name" --frames "$frame" --range "$range" --out "scenes/$name/picture.png"
 done
 if [ $# -eq 0 ]; then tools/run_tutorials.py build/talus --pictures; fi

@@ -3,19 +3,15 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/bench/bench_command.hpp"
-#include "app/commands/calibrate_command.hpp"
 #include "app/commands/check_command.hpp"
-#include "app/commands/converge_command.hpp"
-#include "app/commands/diff_command.hpp"
 #include "app/commands/drive_command.hpp"
-#include "app/commands/fos_command.hpp"
 #include "app/commands/mesh_command.hpp"
 #include "app/commands/new/new_command.hpp"
+#include "app/commands/package_command.hpp"
 #include "app/commands/pictures/picture_commands.hpp"
 #include "app/commands/report/report.hpp"
 #include "app/commands/run_command.hpp"
 #include "app/commands/suite_command.hpp"
-#include "app/commands/sweep_command.hpp"
 #include "app/commands/watch/watch_command.hpp"
 
 namespace talus {
@@ -62,7 +58,7 @@ class ResultCommands {
   ReportOptions report_;
   WatchOptions watch_;
   SurfaceOptions surface_;
-  DiffOptions diff_;
+  PackageCommand diff_{.name = "diff", .words = {}, .starts_runs = false};
   int status_ = 0;
 };
 
@@ -79,10 +75,8 @@ class StudyCommands {
   void add_suite(CLI::App& app, const std::string& name, const std::string& help, SuiteOptions& options);
   void add_bench(CLI::App& app);
 
-  SweepOptions sweep_;
-  ConvergeOptions converge_;
-  FosOptions fos_;
-  CalibrateOptions calibrate_;
+  PackageCommand sweep_{.name = "sweep", .words = {}}, converge_{.name = "converge", .words = {}}, fos_{.name = "fos", .words = {}},
+      calibrate_{.name = "calibrate", .words = {}};
   SuiteOptions verify_, tradeoff_;
   BenchOptions bench_;
 };

@@ -5,22 +5,32 @@
 #include <string>
 #include <vector>
 
+#include "app/commands/package_command.hpp"
+
 namespace talus {
 
-/// Adds options to a command; each that is given becomes a word such as "--width=0.02".  Command and words outlive this object, and the parse.
+/// Adds files and options to a command of the package.  An option that is given becomes a word such as "--width=0.02", a file the word that it
+/// is.  Both commands outlive this object, and the parse.
 class OptionsOfPython {
  public:
-  OptionsOfPython(CLI::App& command, std::vector<std::string>& words) : command_(command), words_(words) {}
+  OptionsOfPython(CLI::App& app, PackageCommand& command) : app_(app), words_(command.words) {}
 
+  CLI::Option* add_file(const std::string& name, const std::string& help) const
+  {
+    return app_
+        .add_option_function<std::string>(
+            name, [&words = words_](const std::string& value) { words.push_back(value); }, help)
+        ->required();
+  }
   CLI::Option* add(const std::string& name, const std::string& help) const
   {
-    return command_.add_option_function<std::string>(
+    return app_.add_option_function<std::string>(
         name, [&words = words_, name](const std::string& value) { words.push_back(name + '=' + value); }, help);
   }
   /// An option with several values, each of which becomes a word.
   CLI::Option* add_list(const std::string& name, const std::string& help) const
   {
-    return command_.add_option_function<std::vector<std::string>>(
+    return app_.add_option_function<std::vector<std::string>>(
         name,
         [&words = words_, name](const std::vector<std::string>& values) {
           for (const std::string& value : values)
@@ -28,14 +38,14 @@ class OptionsOfPython {
         },
         help);
   }
-  void add_flag(const std::string& name, const std::string& help) const
+  CLI::Option* add_flag(const std::string& name, const std::string& help) const
   {
-    command_.add_flag_callback(
+    return app_.add_flag_callback(
         name, [&words = words_, name] { words.push_back(name); }, help);
   }
 
  private:
-  CLI::App& command_;
+  CLI::App& app_;
   std::vector<std::string>& words_;
 };
 

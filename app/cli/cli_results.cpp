@@ -92,14 +92,14 @@ void ResultCommands::add_surface(CLI::App& app)
 void ResultCommands::add_diff(CLI::App& app)
 {
   CLI::App* diff = app.add_subcommand("diff", "compare the results of two runs, field by field");
-  diff->add_option("a", diff_.a, "results of a run")->type_name(folder_value)->required();
-  diff->add_option("b", diff_.b, "results of another run")->type_name(folder_value)->required();
-  const OptionsOfPython words(*diff, diff_.words);
+  const OptionsOfPython words(*diff, diff_);
+  words.add_file("a", "results of a run")->type_name(folder_value);
+  words.add_file("b", "results of another run")->type_name(folder_value);
   words.add("--relative", "allowed difference over the largest value of the field in both runs; default 0")->check(number_not_below_zero());
   words.add("--absolute", "allowed difference, in the unit of each field, besides that; default 0")->check(number_not_below_zero());
   words.add_list("--field", "compare only these fields")->delimiter(',');
   words.add_flag("--last", "compare only the last time that both runs have");
-  diff->callback([this] { compare_results(diff_); });
+  diff->callback([this] { run_in_package(diff_); });
 }
 
 void ResultCommands::add_to(CLI::App& app)

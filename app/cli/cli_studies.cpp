@@ -8,20 +8,19 @@ namespace talus {
 void StudyCommands::add_sweep(CLI::App& app)
 {
   CLI::App* sweep = app.add_subcommand("sweep", "run a scene with several values of its keys, and put their results into a table");
-  sweep->add_option("study", sweep_.study, "study (.yaml): scene, what varies, what is told")->type_name(scene_value)->required();
-  sweep->add_option("--out", sweep_.out, "folder of cases and table; default runs/<name of the study>")->type_name(folder_value);
-  CLI::Option* jobs =
-      sweep->add_option("--jobs", sweep_.jobs, "cases at a time; default as many as there are cores for")->check(number_within(1, 1024));
-  sweep->add_option("--threads", sweep_.threads, "threads of each; default the cores over the cases at a time")
-      ->check(number_within(1, 1024));
-  CLI::Option* only = sweep->add_option("--case", sweep_.only, "run this case alone, counted from 1: for the jobs of an array");
+  const OptionsOfPython words(*sweep, sweep_);
+  words.add_file("study", "study (.yaml): scene, what varies, what is told")->type_name(scene_value);
+  words.add("--out", "folder of cases and table; default runs/<name of the study>")->type_name(folder_value);
+  CLI::Option* jobs = words.add("--jobs", "cases at a time; default as many as there are cores for")->check(number_within(1, 1024));
+  words.add("--threads", "threads of each; default the cores over the cases at a time")->check(number_within(1, 1024));
+  CLI::Option* only = words.add("--case", "run this case alone, counted from 1: for the jobs of an array");
   only->check(number_above_zero())->excludes(jobs);
-  sweep->add_option("--launcher", sweep_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
-  sweep->add_flag("--list", sweep_.list, "run nothing: tell the cases and how far they are, bring the table up to date")->excludes(only);
-  sweep->add_flag("!--no-pictures", sweep_.pictures, "draw nothing");
-  sweep->add_flag("--quick", sweep_.quick, "each case coarse and short: only to see that they run");
-  sweep->add_flag("--quiet", sweep_.quiet, "no progress and no table");
-  sweep->callback([this] { talus::sweep(sweep_); });
+  words.add("--launcher", "what each run is started by, such as \"mpirun -n 4\"");
+  words.add_flag("--list", "run nothing: tell the cases and how far they are, bring the table up to date")->excludes(only);
+  words.add_flag("--no-pictures", "draw nothing");
+  words.add_flag("--quick", "each case coarse and short: only to see that they run");
+  words.add_flag("--quiet", "no progress and no table");
+  sweep->callback([this] { run_in_package(sweep_); });
 }
 
 void StudyCommands::add_converge(CLI::App& app)
@@ -29,8 +28,8 @@ void StudyCommands::add_converge(CLI::App& app)
   constexpr int most_levels = 8;
   CLI::App* converge =
       app.add_subcommand("converge", "run a scene with cells of several sizes: order of convergence and uncertainty of its results");
-  converge->add_option("scene", converge_.scene, "scene file (.yaml) whose mesh Talus makes")->type_name(scene_value)->required();
-  const OptionsOfPython words(*converge, converge_.words);
+  const OptionsOfPython words(*converge, converge_);
+  words.add_file("scene", "scene file (.yaml) whose mesh Talus makes")->type_name(scene_value);
   words.add("--out", "folder of levels and table; default runs/<name of the scene>_convergence")->type_name(folder_value);
   words.add("--ratio", "size of cells over that of the next finer level; default sqrt(2)")->check(number_within(1.2, 4.0));
   words.add("--levels", "how many; default 3")->check(number_within(3, most_levels));
@@ -46,15 +45,15 @@ void StudyCommands::add_converge(CLI::App& app)
   words.add_flag("--json", "print convergence.json and nothing else");
   words.add_flag("--quick", "each level coarse and short: only to see that they run");
   words.add_flag("--quiet", "no progress and no table");
-  converge->callback([this] { talus::converge(converge_); });
+  converge->callback([this] { run_in_package(converge_); });
 }
 
 void StudyCommands::add_fos(CLI::App& app)
 {
   CLI::App* fos =
       app.add_subcommand("fos", "find the factor of safety of a scene: by how much its strength can be divided before it fails");
-  fos->add_option("scene", fos_.scene, "scene file (.yaml) with a geostatic or static stage")->type_name(scene_value)->required();
-  const OptionsOfPython words(*fos, fos_.words);
+  const OptionsOfPython words(*fos, fos_);
+  words.add_file("scene", "scene file (.yaml) with a geostatic or static stage")->type_name(scene_value);
   words.add("--out", "folder of trials and table; default runs/<name of the scene>_fos")->type_name(folder_value);
   const auto number = [&](const char* name, const char* help) { words.add(name, help)->check(number_above_zero()); };
   number("--from", "lowest factor that is tried first; default 0.5");
@@ -79,22 +78,21 @@ void StudyCommands::add_fos(CLI::App& app)
   words.add_flag("--no-pictures", "draw nothing");
   words.add_flag("--quick", "each run coarse and short: only to see that they run");
   words.add_flag("--quiet", "only the factor");
-  fos->callback([this] { find_fos(fos_); });
+  fos->callback([this] { run_in_package(fos_); });
 }
 
 void StudyCommands::add_calibrate(CLI::App& app)
 {
   CLI::App* calibrate = app.add_subcommand("calibrate", "find parameters of a scene from observations, with their uncertainty");
-  calibrate->add_option("specification", calibrate_.specification, "file (.yaml) that names scene, parameters and observations")
-      ->type_name(scene_value)
-      ->required();
-  calibrate->add_option("--out", calibrate_.out, "folder of runs and results; default runs/<name of the file>")->type_name(folder_value);
-  calibrate->add_option("--jobs", calibrate_.jobs, "runs at a time; default 1")->check(number_within(1, 1024));
-  calibrate->add_option("--threads", calibrate_.threads, "threads of each; default as for a run, with --jobs the cores over that")
-      ->check(number_within(1, 1024));
-  calibrate->add_flag("!--no-pictures", calibrate_.pictures, "draw nothing");
-  calibrate->add_flag("--quiet", calibrate_.quiet, "only the results");
-  calibrate->callback([this] { talus::calibrate(calibrate_); });
+  const OptionsOfPython words(*calibrate, calibrate_);
+  words.add_file("specification", "file (.yaml) that names scene, parameters and observations")->type_name(scene_value);
+  words.add("--out", "folder of runs and results; default runs/<name of the file>")->type_name(folder_value);
+  words.add("--jobs", "runs at a time; default 1")->check(number_within(1, 1024));
+  words.add("--threads", "threads of each; default as for a run, with --jobs the cores over that")->check(number_within(1, 1024));
+  words.add("--launcher", "what each run is started by, such as \"mpirun -n 4\"");
+  words.add_flag("--no-pictures", "draw nothing");
+  words.add_flag("--quiet", "only the results");
+  calibrate->callback([this] { run_in_package(calibrate_); });
 }
 
 void StudyCommands::add_suite(CLI::App& app, const std::string& name, const std::string& help, SuiteOptions& options)

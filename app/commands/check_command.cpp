@@ -39,7 +39,7 @@ struct StepRange {
   Real middle() const noexcept { return static_cast<Real>(least + most) / 2; }
 };
 
-std::int64_t steps_of(Real time, Real dt) { return counted(std::ceil(time / dt)); }
+std::int64_t steps_of(Real time, Real dt) { return counted(std::ceil(time / dt * (1 - 1e-9))); }
 StepRange steps_of(const RestTime& time, Real dt) { return {steps_of(time.soonest, dt), steps_of(time.latest, dt)}; }
 
 /// The range as text, "12" or "12 to 40", multiplied by a factor.
@@ -196,7 +196,7 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
         cost.nodes_as_corners, nodes);
   StepRange steps;
   for (const Stage& stage : stages)
-    steps += steps_of(time_to_rest(stage, passage), cost.dt);
+    steps += steps_of(time_to_rest(stage, passage), stage.equilibrium ? stage.duration / stage.equilibrium->increments : cost.dt);
   fmt::print("  first step {:.3g} s, so about {} steps and {} million particle-steps\n{}", cost.dt, in_words(steps),
              in_words(steps, particles / million), describe_rest(stages, passage, cost.dt));
   fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / megabyte,

@@ -30,7 +30,7 @@ std::string csv_of(const PointTable& table, const std::vector<MeasuredColumn>& c
     text += fmt::format(",{}", column.name);
   for (const char i : {'x', 'y', 'z'})
     for (const char j : {'x', 'y', 'z'})
-      text += fmt::format(",F_{}{}", i, j);
+      text += fmt::format(",F_{}{} [-]", i, j);
   for (const auto pair : pairs)
     text += fmt::format(",stress_{} [Pa]", pair);
   text += ",p [Pa],q [Pa]";

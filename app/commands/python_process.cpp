@@ -30,7 +30,7 @@ fs::path find_scripts(const fs::path& self, const PythonScripts& scripts)
                                      installed.string(), source.string(), scripts.variable, scripts.folder));
 }
 
-void become_command(const std::string& name, const std::string& about, const std::vector<std::string>& options)
+void become_command(const std::string& name, const std::vector<std::string>& words)
 {
   const fs::path self = fs::read_symlink("/proc/self/exe");
   std::string path =
@@ -39,9 +39,9 @@ void become_command(const std::string& name, const std::string& about, const std
   if (const char* before = std::getenv("PYTHONPATH"); before != nullptr && *before != '\0')
     path += fmt::format(":{}", before);
   ::setenv("PYTHONPATH", path.c_str(), 1);
-  std::vector<std::string> words{"-P", "-m", "talus", name, about, "--program", self.string()};
-  words.insert(words.end(), options.begin(), options.end());
-  become_python(words);
+  std::vector<std::string> all{"-P", "-m", "talus", name, "--program", self.string()};
+  all.insert(all.end(), words.begin(), words.end());
+  become_python(all);
 }
 
 void become_python(const std::vector<std::string>& words)

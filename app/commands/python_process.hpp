@@ -20,8 +20,8 @@ std::filesystem::path find_scripts(const std::filesystem::path& self, const Pyth
 /// It writes no files beside installed scripts.  Throws EnvironmentError where it cannot be started.
 [[noreturn]] void become_python(const std::vector<std::string>& words);
 
-/// Replaces this process by a command of the Python package talus: its name, what it is about, the path of this program, and the options.
+/// Replaces this process by a command of the Python package talus: its name, the path of this program, and further words.
 /// Throws EnvironmentError where the package or Python is missing.
-[[noreturn]] void become_command(const std::string& name, const std::string& about, const std::vector<std::string>& options);
+[[noreturn]] void become_command(const std::string& name, const std::vector<std::string>& words);
 
 }  // namespace talus

@@ -80,10 +80,10 @@ void compare(const RunIdentity& then, const RunIdentity& now)
     throw EnvironmentError(
         fmt::format("the mesh of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
   if (then.from_files != now.from_files)
-    throw EnvironmentError(
-        fmt::format("a record or the water table of {}, or the table of a body, is not the one that the checkpoint was made with: its file "
-                    "has changed since",
-                    now.scene_file));
+    throw EnvironmentError(fmt::format(
+        "a record or the water table of {}, the table of a body, or the surface of a rigid body is not the one that the checkpoint was "
+        "made with: its file has changed since",
+        now.scene_file));
   std::vector<std::string> maker, here;  // differing parts
   for (const auto& [what, part] :
        {std::pair("commit", &RunIdentity::commit), std::pair("compiler", &RunIdentity::compiler), std::pair("build", &RunIdentity::build)})

@@ -267,6 +267,7 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& saved) const
       load(arrays, "clock", saved.clock);
       load(arrays, "stage", saved.stage);
       load(arrays, "energy", saved.energy);
+      load(arrays, "flow", saved.flow);
       take_laws_of(saved.stage, saved.laws, saved.materials);
       recall_slice(arrays, 0, 1, saved.bodies, saved.materials, saved.particles);
       std::vector<std::string> faults;

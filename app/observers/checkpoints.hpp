@@ -17,7 +17,7 @@ struct RunIdentity {
   std::vector<std::string> set;                  ///< changes by --set
   bool quick = false;
   std::int64_t mesh = 0;        ///< digest of the mesh
-  std::int64_t from_files = 0;  ///< digest of records and of the water table
+  std::int64_t from_files = 0;  ///< digest of records, of the water table and of the surfaces of rigid bodies
   std::string initial;          ///< initial state from another run, or empty
   static constexpr auto fields()
   {
@@ -98,6 +98,7 @@ struct KeptBodies {
   Clock clock;
   StageState stage;
   EnergyLedger energy;
+  FlowLedger flow;
   std::vector<std::vector<Material>> laws;  ///< laws of each stage, to be set before reading
 };
 

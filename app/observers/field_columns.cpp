@@ -12,6 +12,7 @@
 #include "core/parallel/threads.hpp"
 #include "io/output/output_fields.hpp"
 #include "materials/interface/any_law.hpp"
+#include "materials/interface/varied_law.hpp"
 #include "solver/model/seepage.hpp"
 
 namespace talus {
@@ -71,6 +72,8 @@ Column history_column(const Problem<D>& problem, const State<D>& state, std::spa
     for (const HistoryVariable& variable : law->variables)
       if (variable.key == name)
         column.components = variable.components, column.unit = unit_in(D, variable.unit);
+  if (column.components == 0 && is_name_of_factor(name))
+    column.components = 1, column.unit = "-";
   if (column.components == 0)
     no_such_field(name);
   const auto width = static_cast<std::size_t>(column.components);

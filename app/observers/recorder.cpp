@@ -6,6 +6,7 @@
 
 #include "app/observers/results.hpp"
 #include "app/observers/rigid_frame.hpp"
+#include "app/observers/summary_parts.hpp"
 #include "core/print.hpp"
 #include "io/files/manifest.hpp"
 
@@ -28,53 +29,6 @@ Real total(std::span<const Stage> stages)
   for (const Stage& stage : stages)
     sum += stage.duration;
   return sum;
-}
-
-struct Content {
-  Real particles{}, mass{};  ///< mass [kg]
-  Content& operator+=(const Content& other) noexcept
-  {
-    particles += other.particles, mass += other.mass;
-    return *this;
-  }
-};
-
-template <int D>
-BodySummary summary_of(const RunView<D>& view, std::size_t b)
-{
-  const Body& body = view.state.bodies[b];
-  ExactSums<Content> sum;
-  const auto number = static_cast<Index>(b);
-  add_particles(view, {number, number + 1}, sum, [](const auto& p) { return Content{1, p.mass()}; });
-  view.problem.ranks->sum(sum);
-  const Content content = sum.value();
-  const Material& material = view.state.materials[b];
-  return {body.name, material.name, std::string(material.law().name()), static_cast<std::int64_t>(content.particles), content.mass};
-}
-
-/// Statistics of the ranks since `begin`, when `step_begin` steps had been done.  Collective.
-template <int D>
-RanksSummary ranks_of(const RunView<D>& view, const Traffic& begin, std::int64_t step_begin)
-{
-  Communicator& ranks = *view.problem.ranks;
-  RanksSummary summary{.count = ranks.size()};
-  if (ranks.alone())
-    return summary;
-  const Traffic now = ranks.traffic();
-  const auto steps = static_cast<Real>(std::max(view.state.clock.step - step_begin, std::int64_t{1}));
-  const auto a_step = [&](std::int64_t from, std::int64_t to) { return ranks.max(static_cast<Real>(to - from) / steps); };
-  Index own = 0;
-  for (Index c = 0; c < view.problem.mesh.n_cells(); ++c)
-    own += view.problem.subdomain.owns_cell(c) ? 1 : 0;
-  const std::int64_t here = view.state.particles.size(), all = std::max(ranks.sum(here), std::int64_t{1});
-  summary.imbalance = static_cast<Real>(ranks.max(here)) * ranks.size() / static_cast<Real>(all);
-  summary.cells_held = ranks.max(own > 0 ? static_cast<Real>(view.problem.mesh.n_cells()) / own : Real{1});
-  summary.messages = a_step(begin.messages, now.messages);
-  summary.bytes = a_step(begin.bytes, now.bytes);
-  summary.collectives = a_step(begin.calls, now.calls);
-  summary.collective_bytes = a_step(begin.bytes_to_all, now.bytes_to_all);
-  summary.particles_moved = static_cast<Real>(ranks.sum(view.migrated)) / 2 / steps / static_cast<Real>(all);
-  return summary;
 }
 
 }  // namespace
@@ -275,7 +229,8 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent event)
     welcome(view);
   if (event == RunEvent::stage_begins)
     stage_start_ = view.state.clock.time;
-  if (event == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && view.stage_name != "geostatic") {
+  if (event == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && view.stage_kind != "geostatic" &&
+      view.stage_kind != "static") {
     runout_.begin(view);
     name("runout.csv");
   }

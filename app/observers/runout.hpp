@@ -17,7 +17,7 @@ class Runout {
   /// `spec` must outlive it; without a spec nothing is done.
   Runout(std::filesystem::path folder, const std::optional<RunoutSpec>& spec);
 
-  /// Begins with the first stage that is not geostatic.  This and the functions below are collective.
+  /// Begins with the first stage that is neither geostatic nor static.  This and the functions below are collective.
   void begin(const RunView<D>& view);
   bool has_begun() const noexcept { return begun_; }
   /// Takes a sample if one is due or it is the last of a stage, and writes a frame if requested.  Returns the files of frames.

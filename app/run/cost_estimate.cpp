@@ -13,6 +13,8 @@ namespace {
 
 /// Number of steps at the beginning of a stage that are not measured: they put particles in strips and touch memory for the first time.
 constexpr std::int64_t trial_warm_up = 3;
+/// Increments of a stage without inertia that are measured.
+constexpr int increments_of_trial = 2;
 /// Particle-steps of a trial, which take some seconds on a core, and limits of its number of steps.
 constexpr std::int64_t trial_particle_steps = 2'000'000, fewest_trial_steps = 8, most_trial_steps = 200;
 
@@ -40,7 +42,14 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
       trial_warm_up + std::clamp(trial_particle_steps / std::max<std::int64_t>(setup.n_particles, 1), fewest_trial_steps, most_trial_steps);
   const Real dt = first_step(mesh, setup);
   for (Stage& stage : setup.stages) {
-    stage.duration = std::min(stage.duration, static_cast<Real>(wanted) * dt);
+    if (stage.equilibrium) {
+      const int increments = std::min(stage.equilibrium->increments, increments_of_trial);
+      stage.duration *= static_cast<Real>(increments) / static_cast<Real>(stage.equilibrium->increments);
+      stage.equilibrium->increments = increments;
+      stage.equilibrium->most_unbalanced.reset();
+    } else {
+      stage.duration = std::min(stage.duration, static_cast<Real>(wanted) * dt);
+    }
     stage.residual.reset();  // all steps are made, in equilibrium or not
   }
   std::vector<Timed> timed(whole.size());
@@ -50,10 +59,12 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
                                 return;
                               Real seconds = 0;
                               watch.lap(seconds);
-                              const bool counts = view.state.clock.step - view.state.stage.first_step > trial_warm_up;
+                              const auto number = static_cast<std::size_t>(view.state.stage.number);
+                              const bool counts =
+                                  whole[number].equilibrium || view.state.clock.step - view.state.stage.first_step > trial_warm_up;
                               if (event == RunEvent::step_begins || !counts)
                                 return;
-                              Timed& stage = timed[static_cast<std::size_t>(view.state.stage.number)];
+                              Timed& stage = timed[number];
                               stage.seconds.push_back(seconds);
                               stage.time += view.state.clock.dt;
                             },

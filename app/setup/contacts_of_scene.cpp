@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "solver/particles/staged_bodies.hpp"
 
@@ -36,9 +37,14 @@ Contacts contacts_of(const Scene& scene, const std::vector<Body>& bodies, SceneE
   const auto number = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(bodies, name, &Body::name) - bodies.begin());
   };
+  const auto are_known = [&](const ContactSpec& contact) {  // a body that could not be filled is an error already
+    return number(contact.between[0]) < bodies.size() && number(contact.between[1]) < bodies.size();
+  };
   SharedFields shared(bodies.size());
   std::vector<std::uint8_t> is_apart(bodies.size(), 0);
   for (const ContactSpec& contact : scene.contacts) {
+    if (!are_known(contact))
+      continue;
     const std::size_t a = number(contact.between[0]), b = number(contact.between[1]);
     if (contact.tied)
       shared.join(a, b);
@@ -63,7 +69,7 @@ Contacts contacts_of(const Scene& scene, const std::vector<Body>& bodies, SceneE
   contacts.n_fields = std::max(static_cast<Index>(field.size()), Index{1});
   std::map<std::pair<Index, Index>, const ContactSpec*> given;
   for (const ContactSpec& contact : scene.contacts) {
-    if (contact.tied)
+    if (contact.tied || !are_known(contact))
       continue;
     const auto fields = std::minmax(contacts.field_of_body[number(contact.between[0])], contacts.field_of_body[number(contact.between[1])]);
     if (fields.first == fields.second) {
@@ -138,22 +144,35 @@ void check_overlaps(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& set
 {
   const State<D>& state = setup.state;
   CellOrder order;
-  for (const ContactSpec& contact : scene.contacts) {
-    const auto at_start = [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; };
-    if (contact.tied || !std::ranges::all_of(contact.between, at_start))
-      continue;
+  const auto check = [&](const std::string& first, const std::string& second, const SourceLocation& where, const char* key) {
+    if (presence_of(first, scene.stages).from != 0 || presence_of(second, scene.stages).from != 0)
+      return;
     if (order.row.empty())
       sort_by_cell(state.particles.cell, state.particles.id, state.bodies, mesh.n_cells(), order);
     const auto volume = [&](const std::string& name) {
       return volume_in_cells(mesh, state.particles, order, [&](Index b) { return state.bodies[static_cast<std::size_t>(b)].name == name; });
     };
-    const auto first = volume(contact.between[0]), second = volume(contact.between[1]);
-    if (const Overlap<D> taken = overlap<D>(mesh, first, second, ranks); taken.share() > most_overlap)
-      errors.add(contact.where, "between",
+    if (const Overlap<D> taken = overlap<D>(mesh, volume(first), volume(second), ranks); taken.share() > most_overlap)
+      errors.add(where, key,
                  fmt::format("\"{}\" overlaps \"{}\" at the start: {}; move one of them, or cut it out of the other by a shape of type "
                              "difference",
-                             contact.between[1], contact.between[0], describe(taken)));
+                             second, first, describe(taken)));
+  };
+  std::set<std::pair<std::string, std::string>> given;
+  for (const ContactSpec& contact : scene.contacts) {
+    given.insert(std::minmax(contact.between[0], contact.between[1]));
+    if (!contact.tied)
+      check(contact.between[0], contact.between[1], contact.where, "between");
   }
+  // Other bodies with velocity fields of their own are in contact too: without friction, or by the contact of a body tied to them.
+  const std::vector<Index>& field = setup.conditions.contacts.field_of_body;
+  for (std::size_t a = 0; a < field.size(); ++a)
+    for (std::size_t b = a + 1; b < field.size(); ++b) {
+      const std::string &first = state.bodies[a].name, &second = state.bodies[b].name;
+      const auto spec = std::ranges::find(scene.bodies, second, &BodySpec::name);
+      if (field[a] != field[b] && spec != scene.bodies.end() && !given.contains(std::minmax(first, second)))
+        check(first, second, spec->where, "shape");
+    }
 }
 
 template void check_overlaps(const Scene&, const Mesh<2>&, const Setup<2>&, Communicator&, SceneErrorCollector&);

@@ -153,6 +153,81 @@ std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneError
   }
 }
 
+/// Water that flows goes on with its pressures if all bodies through which it flows here have particles of bodies through which it flowed there.
+template <int D>
+bool carry_flow(const Scene& scene, const KeptBodies<D>& there, std::span<const TakenParticles> all, const std::vector<Body>& bodies,
+                Particles<D>& p)
+{
+  const Particles<D>& from = there.particles;
+  if (!scene.water || !scene.water->flow || !there.flow.begun || from.water.empty())
+    return false;
+  const auto flows = [&](const std::string& body) {
+    return std::ranges::any_of(scene.water->flow->bodies, [&](const PoresSpec& one) { return one.body == body; });
+  };
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (flows(bodies[b].name) && std::ranges::find(all, b, &TakenParticles::body) == all.end())
+      return false;
+  p.water.assign(p.id.size(), 0);
+  p.water_gradient.assign(p.id.size(), Vec<D>::Zero());
+  p.water_at_rest.assign(p.id.size(), 0);
+  for (const TakenParticles& taken : all)
+    for (std::size_t k = 0; k < taken.rows.size() && flows(bodies[taken.body].name); ++k) {
+      const std::size_t row = to_size(bodies[taken.body].begin) + k, source = to_size(taken.rows[k]);
+      p.water.set(row, from.water[source]), p.water_gradient.set(row, from.water_gradient[source]);
+      p.water_at_rest.set(row, from.water_at_rest[source]);
+    }
+  return true;
+}
+
+template <int D>
+bool carry_columns(const Scene& scene, const KeptBodies<D>& other, std::span<const TakenParticles> all, const std::vector<Body>& bodies,
+                   const std::vector<Material>& materials, SceneErrorCollector& errors, Particles<D>& p)
+{
+  const Particles<D>& from = other.particles;
+  const auto n = p.id.size();
+  const auto for_each_taken = [&](auto&& f) {
+    for (const TakenParticles& taken : all)
+      for (std::size_t k = 0; k < taken.rows.size(); ++k)
+        f(taken, to_size(bodies[taken.body].begin) + k, to_size(taken.rows[k]));
+  };
+  if (scene.transfer.own_affine_field() && !from.C.empty()) {
+    p.C = p.L;
+    if (scene.initial->velocity == Carried::keep)
+      for_each_taken([&](const TakenParticles&, std::size_t row, std::size_t there) { p.C.set(row, from.C[there]); });
+  }
+  if (scene.initial->displacement == Carried::keep && from.x0.empty()) {
+    errors.add(scene.initial->where, "displacement", "the run there kept none: it wrote neither displacements nor points");
+  } else if (scene.initial->displacement == Carried::keep) {
+    p.x0 = p.x;
+    for_each_taken([&](const TakenParticles&, std::size_t row, std::size_t there) { p.x0.set(row, from.x0[there]); });
+  }
+  if (!from.volume_ratio.empty() && std::ranges::any_of(materials, [](const Material& one) { return one.averages_volume; })) {
+    p.volume_ratio.assign(n, 1);
+    for_each_taken([&](const TakenParticles&, std::size_t row, std::size_t there) { p.volume_ratio.set(row, from.volume_ratio[there]); });
+  }
+  if (!from.viscous.empty()) {
+    if (std::ranges::any_of(materials, [](const Material& one) { return one.viscosity.has_value(); }))
+      p.viscous.assign(n, 0);
+    for_each_taken([&](const TakenParticles& taken, std::size_t row, std::size_t there) {
+      if (materials[taken.body].viscosity)
+        p.viscous.set(row, from.viscous[there]);
+      else
+        p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));
+    });
+  }
+  if (!from.pore.empty()) {
+    if (scene.water)
+      p.pore.assign(n, 0);
+    for_each_taken([&](const TakenParticles& taken, std::size_t row, std::size_t there) {
+      if (!scene.water)  // it is gone, and the effective stress is all there is
+        p.stress.set(row, add_diagonal(p.stress[row], from.pore[there]));
+      else if (is_drained(*scene.water, bodies[taken.body].name))
+        p.pore.set(row, from.pore[there]);  // of others the stress stays in total
+    });
+  }
+  return carry_flow(scene, other, all, bodies, p);
+}
+
 void carry_history(const Material& from, std::span<const Index> rows, Material& to)
 {
   for (const HistoryVariable& variable : to.law().variables())
@@ -184,6 +259,10 @@ Real settle_stress(const Body& body, std::string_view law_there, Real dt, Commun
   return fit.apart / fit.largest;
 }
 
+template bool carry_columns<2>(const Scene&, const KeptBodies<2>&, std::span<const TakenParticles>, const std::vector<Body>&,
+                               const std::vector<Material>&, SceneErrorCollector&, Particles<2>&);
+template bool carry_columns<3>(const Scene&, const KeptBodies<3>&, std::span<const TakenParticles>, const std::vector<Body>&,
+                               const std::vector<Material>&, SceneErrorCollector&, Particles<3>&);
 template Real settle_stress<2>(const Body&, std::string_view, Real, Communicator&, Material&, Particles<2>&);
 template Real settle_stress<3>(const Body&, std::string_view, Real, Communicator&, Material&, Particles<3>&);
 template std::optional<InitialState<2>> find_initial_state<2>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);

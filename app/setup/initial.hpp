@@ -22,6 +22,19 @@ struct InitialState {
 template <int D>
 std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneErrorCollector& errors, std::vector<std::string>& warnings);
 
+/// Particles of another run that a body takes, of one law there.
+struct TakenParticles {
+  std::size_t body;         ///< here, its first particles in the order of `rows`
+  std::string law;          ///< there
+  std::vector<Index> rows;  ///< there
+};
+
+/// Columns that a scene may have or not, where both have them; in other bodies they are as at rest.  Returns whether water flows on: its
+/// pressures are then those of that run.
+template <int D>
+bool carry_columns(const Scene& scene, const KeptBodies<D>& other, std::span<const TakenParticles> all, const std::vector<Body>& bodies,
+                   const std::vector<Material>& materials, SceneErrorCollector& errors, Particles<D>& p);
+
 /// What two laws both remember: rows of one history become the history of the other.
 void carry_history(const Material& from, std::span<const Index> rows, Material& to);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "materials/interface/varied_law.hpp"
+
 namespace talus {
 
 namespace {
@@ -69,7 +71,7 @@ bool is_renewed(const Scene& scene, const BodySpec& body, Index stage)
 Material law_in_force(const Scene& scene, const BodySpec& body, Index stage)
 {
   const MaterialSpec& spec = *material_of(scene, body, stage);
-  Material material(spec.law.model(), 0, 0, spec.name, spec.where);
+  Material material(varied_law(spec.law, spec.variation), 0, 0, spec.name, spec.where);
   if (const Real factor = weakened_by(scene, body, stage); factor != 1)
     material.weaken(factor);
   material.viscosity = spec.bulk_viscosity;

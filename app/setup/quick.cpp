@@ -26,6 +26,8 @@ void shorten(Real dt, std::vector<Stage>& stages, OutputSpec& outputs)
     stage.duration *= share;
     stage.ramp *= share;
     stage.residual.reset();
+    if (stage.equilibrium)
+      stage.equilibrium->most_unbalanced.reset();
   }
   const auto fewer = [&](auto& output) {
     if (output)

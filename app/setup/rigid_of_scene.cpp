@@ -120,6 +120,12 @@ Facets<D> facets_of_sheet(const std::vector<std::vector<Real>>& points)
       total += area(0, i, i + 1);
     }
     const Real size = total.norm();
+    Real longest = 0;  // squared
+    for (const Vec3& corner : all.corners)
+      longest = std::max(longest, (corner - all.corners[0]).squaredNorm());
+    constexpr Real thin = 1e-9;
+    if (!(size > thin * longest))
+      throw std::invalid_argument("the corners of a sheet lie on a line: it has no area");
     constexpr Real flat = 1e-6;
     for (Index i = 0; i < n; ++i) {
       const Vec3 turn = area(i, (i + 1) % n, (i + 2) % n);
@@ -220,6 +226,8 @@ class RigidBuilder {
     if (const std::string fault = spec.is_sheet() ? in_scene.fault_of_sheet() : in_scene.fault(); !fault.empty())
       throw std::invalid_argument("the surface " + fault);
     solid = spec.is_sheet() ? in_scene.sheet() : in_scene.solid();
+    if (!(solid.volume > 0))
+      throw std::invalid_argument("the surface has no area");
     for (Vec<D>& corner : facets.corners)
       corner -= solid.centre;
     return std::make_shared<const RigidShape<D>>(FacetSurface<D>(std::move(facets.corners), std::move(facets.facets)),
@@ -259,6 +267,28 @@ std::vector<RigidWall<D>> walls_of(const Scene& scene, const Mesh<D>& mesh)
       walls.push_back({group, FacetSurface<D>(std::move(wall.corners), std::move(wall.facets))});
   }
   return walls;
+}
+
+/// Of two rigid bodies, a sheet is felt by a solid at points of the sheet alone: what fits between these may pass through it.
+template <int D>
+void warn_of_small_solids(const Scene& scene, Setup<D>& setup)
+{
+  const std::vector<RigidBody<D>>& bodies = setup.conditions.rigid.bodies;
+  for (const RigidBody<D>& sheet : bodies) {
+    if (!sheet.shape->is_sheet())
+      continue;
+    const Real spacing = spacing_of_samples(sheet.shape->radius());
+    for (std::size_t r = 0; r < bodies.size(); ++r) {
+      const RigidShape<D>& shape = *bodies[r].shape;
+      if (shape.is_ball() || shape.is_sheet() || (!bodies[r].is_free() && !sheet.is_free()))
+        continue;
+      if (const Real width = std::pow(shape.facets()->solid().volume, 1.0 / D); width < spacing)
+        setup.warnings.push_back(fmt::format(
+            "{}: \"{}\", {:.3g} m wide, may pass through the sheet \"{}\", which rigid bodies feel at points up to {:.3g} m apart: make "
+            "the sheet of several smaller ones, or the body a sphere",
+            to_string(scene.rigid[r].where), bodies[r].name, width, sheet.name, spacing));
+    }
+  }
 }
 
 /// Bodies that begin inside material or inside each other.
@@ -319,6 +349,7 @@ void add_rigid_bodies(const Scene& scene, const Mesh<D>& mesh, Communicator& ran
     return;  // one of them is wrong
   setup.conditions.rigid.walls = walls_of(scene, mesh);
   check_rigid_places(scene, ranks, setup, errors);
+  warn_of_small_solids(scene, setup);
 }
 
 template void add_rigid_bodies(const Scene&, const Mesh<2>&, Communicator&, SceneErrorCollector&, Setup<2>&);

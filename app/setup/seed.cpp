@@ -7,9 +7,11 @@
 
 #include "app/setup/checks/shared_nodes.hpp"
 #include "app/setup/laws_in_force.hpp"
+#include "app/setup/parameter_fields.hpp"
 #include "app/setup/setup.hpp"
 #include "core/parallel/threads.hpp"
 #include "io/system/memory.hpp"
+#include "materials/interface/varied_law.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/quadrature.hpp"
 
@@ -69,6 +71,7 @@ class Seeder {
                               spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
     seeds_.bodies.push_back({spec.name, begin, end, spec.where});
     seeds_.materials.push_back(first_law(spec, begin, end));
+    set_parameters_in_space(seeds_.particles, ranks_, errors_, seeds_.materials.back());
     set_velocity(spec, mesh_, ranks_, begin, end, errors_, seeds_.particles);
   }
 
@@ -99,6 +102,8 @@ class Seeder {
                   fmt::format("the particles come from law \"{}\", and law \"{}\" cannot start from their stress; of other laws {} can",
                               there.law().name(), material_here.law().name(), or_list(laws_that_start_from_stress())));
     }
+    if (material_here.law().name() != there.law().name() || !varies_alike(material_here.law(), there.law()))
+      set_parameters_in_space(seeds_.particles, ranks_, errors_, material_here);
     taken_.push_back({seeds_.bodies.size(), std::string(there.law().name()), rows});
     initial.origin.bodies.push_back({spec.name, source.name, source.size()});
     seeds_.bodies.push_back(body);
@@ -108,7 +113,8 @@ class Seeder {
   /// What concerns all bodies of another run together, once they are all there.
   void settle(const InitialState<D>& initial, std::vector<std::string>& warnings)
   {
-    carry_columns(initial.there.particles);
+    seeds_.water_flows_on = carry_columns(scene_, initial.there, std::span<const TakenParticles>(taken_), seeds_.bodies, seeds_.materials,
+                                          errors_, seeds_.particles);
     for (const auto& [body, law, rows] : taken_) {
       constexpr Real worth_a_word = 0.01;
       const Body& here = seeds_.bodies[body];
@@ -291,66 +297,13 @@ class Seeder {
     std::replace(outside, last, none, Index{0});  // the scene is refused, but looked at to its end
   }
 
-  /// Columns that a scene may have or not, where both have them; in other bodies they are as at rest.
-  void carry_columns(const Particles<D>& from)
-  {
-    Particles<D>& p = seeds_.particles;
-    const auto n = p.id.size();
-    const auto for_each_taken = [&](auto&& f) {
-      for (const Taken& taken : taken_)
-        for_each_pair(seeds_.bodies[taken.body].begin, taken.rows, [&](std::size_t row, std::size_t there) { f(taken, row, there); });
-    };
-    if (scene_.transfer.own_affine_field() && !from.C.empty()) {
-      p.C = p.L;
-      if (scene_.initial->velocity == Carried::keep)
-        for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.C.set(row, from.C[there]); });
-    }
-    if (scene_.initial->displacement == Carried::keep && from.x0.empty()) {
-      errors_.add(scene_.initial->where, "displacement", "the run there kept none: it wrote neither displacements nor points");
-    } else if (scene_.initial->displacement == Carried::keep) {
-      p.x0 = p.x;
-      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.x0.set(row, from.x0[there]); });
-    }
-    if (!from.volume_ratio.empty() && std::ranges::any_of(seeds_.materials, [](const Material& one) { return one.averages_volume; })) {
-      p.volume_ratio.assign(n, 1);
-      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio.set(row, from.volume_ratio[there]); });
-    }
-    if (!from.viscous.empty()) {
-      if (std::ranges::any_of(seeds_.materials, [](const Material& one) { return one.viscosity.has_value(); }))
-        p.viscous.assign(n, 0);
-      for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
-        if (seeds_.materials[taken.body].viscosity)
-          p.viscous.set(row, from.viscous[there]);
-        else
-          p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));
-      });
-    }
-    if (!from.pore.empty()) {
-      if (scene_.water)
-        p.pore.assign(n, 0);
-      for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
-        if (!scene_.water)  // it is gone, and the effective stress is all there is
-          p.stress.set(row, add_diagonal(p.stress[row], from.pore[there]));
-        else if (is_drained(*scene_.water, seeds_.bodies[taken.body].name))
-          p.pore.set(row, from.pore[there]);  // of others the stress stays in total
-      });
-    }
-  }
-
-  /// One law of a body there.
-  struct Taken {
-    std::size_t body;  ///< here
-    std::string law;   ///< there
-    std::vector<Index> rows;
-  };
-
   const Scene& scene_;
   const Mesh<D>& mesh_;
   Communicator& ranks_;
   IndexRange mine_;  // cells
   SceneErrorCollector& errors_;
   Seeds<D> seeds_;
-  std::vector<Taken> taken_;
+  std::vector<TakenParticles> taken_;
 };
 
 }  // namespace

@@ -14,8 +14,9 @@ struct Seeds {
   std::vector<Body> bodies;
   std::vector<Material> materials;
   std::optional<OriginSummary> origin;
-  Real lag = 0;             ///< by how much the velocities of another run are behind its time, Clock::lag [s]
-  Real largest_before = 0;  ///< largest term of the energy of that run [J]
+  Real lag = 0;                 ///< by how much the velocities of another run are behind its time, Clock::lag [s]
+  Real largest_before = 0;      ///< largest term of the energy of that run [J]
+  bool water_flows_on = false;  ///< with the pressures that it had there
 };
 
 /// Cells [begin, end) that this rank fills: an even share of the blocks along the curve.

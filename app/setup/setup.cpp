@@ -103,6 +103,10 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& rank
   };
   std::ranges::for_each(setup.conditions.loads.on_particles, press);
   std::ranges::for_each(setup.conditions.loads.on_mesh, press);
+  for (const MeshTraction<D>& load : setup.conditions.loads.on_mesh)
+    if (!load.height.empty())  // open water
+      pressure = std::max(pressure, load.unit_weight * std::max(load.level.largest_magnitude() - mesh.low()[D - 1], Real{0}) *
+                                        load.table.largest_magnitude());
   for (const SurfaceLoad<D>& load : setup.conditions.loads.on_surfaces)
     pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure) * load.largest_height(mesh.low()[D - 1])) *
                                       load.table.largest_magnitude());
@@ -135,7 +139,7 @@ RunLimits run_limits_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>&
 }
 
 template <int D>
-std::uint64_t digest_of_files(const Setup<D>& setup)
+std::uint64_t digest_of_files(const Scene& scene, const Setup<D>& setup)
 {
   std::vector<Real> numbers = setup.conditions.water.table;
   numbers.insert(numbers.end(), setup.start_digest.begin(), setup.start_digest.end());
@@ -146,6 +150,17 @@ std::uint64_t digest_of_files(const Setup<D>& setup)
     if (const Record* record = condition.record())
       for (const std::vector<Real>* part : {&record->time, &record->velocity, &record->acceleration})
         numbers.insert(numbers.end(), part->begin(), part->end());
+  for (std::size_t r = 0; r < scene.rigid.size(); ++r) {
+    const RigidSpec& spec = scene.rigid[r];
+    const FacetSurface<D>* facets = setup.conditions.rigid.bodies[r].shape->facets();
+    if ((spec.file.empty() && spec.sheet_file.empty()) || !facets)
+      continue;
+    numbers.insert(numbers.end(), setup.state.rigid[r].x.begin(), setup.state.rigid[r].x.end());  // corners are about it
+    for (const Vec<D>& corner : facets->corners())
+      numbers.insert(numbers.end(), corner.begin(), corner.end());
+    for (const auto& facet : facets->facets())
+      std::ranges::transform(facet, std::back_inserter(numbers), [](Index corner) { return static_cast<Real>(corner); });
+  }
   return digest(std::span<const Real>(numbers));
 }
 
@@ -271,6 +286,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.origin = std::move(seeds.origin);
   setup.state.clock.lag = seeds.lag;
   setup.state.energy.largest_before = seeds.largest_before;
+  setup.state.flow.begun = seeds.water_flows_on;
   const CellOccupancy<D> has_particles(mesh, setup.state.particles, setup.state.bodies, ranks, [](const std::string&) { return true; });
   const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
@@ -323,7 +339,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   const Gravity<D>& gravity = setup.conditions.loads.gravity;
   setup.conditions.transfer = scene.transfer.with_damping(
       fall_time(mesh, has_particles, gravity.table.largest_magnitude() * gravity.acceleration.norm()), any_body_flows(setup));
-  setup.from_files = digest_of_files(setup);
+  setup.from_files = digest_of_files(scene, setup);
   return setup;
 }
 

@@ -23,7 +23,7 @@ struct Setup {
   std::optional<OriginSummary> origin;          ///< of bodies that come from another run
   std::vector<StartStateSummary> start_states;  ///< of bodies that start with a table
   std::vector<Real> start_digest;               ///< the bits of the digests of their tables
-  std::uint64_t from_files = 0;                 ///< digest of what files beside scene and mesh tell the steps: records, the water table
+  std::uint64_t from_files = 0;  ///< digest of what files beside scene and mesh tell the steps: records, the water table, surfaces
 };
 
 /// Throws SceneErrors with everything that is wrong: groups the mesh does not have, bodies without particles, loads on nothing.

@@ -3,7 +3,9 @@
 #include <numeric>
 
 #include "app/setup/initial.hpp"
+#include "app/setup/parameter_fields.hpp"
 #include "core/parallel/threads.hpp"
+#include "materials/interface/varied_law.hpp"
 
 namespace talus {
 
@@ -63,11 +65,15 @@ void renew(const std::vector<Renewal>& bodies, std::span<const Material> laws, S
     Material& material = state.materials[static_cast<std::size_t>(b)];
     const Material before = std::exchange(material, laws[static_cast<std::size_t>(b)]);
     begin_anew(body.begin, body.end, material);
-    if (before.law().name() == material.law().name()) {
+    const bool same_law = before.law().name() == material.law().name();
+    if (same_law) {
       std::vector<Index> same(static_cast<std::size_t>(body.size()));
       std::iota(same.begin(), same.end(), 0);
       carry_history(before, same, material);
     }
+    if (!same_law || !varies_alike(before.law(), material.law()))
+      for (const ParameterTrouble& one : set_parameters_in_space(particles, ranks, material))
+        throw RunError(fmt::format("body \"{}\" cannot become {}: {}: {}", body.name, material.name, to_string(one.where), one.message));
     if (before.viscosity && !material.viscosity)
       drop_viscosity(body, particles);
     if (const Real heavier = material.law().density() / before.law().density(); heavier != 1) {

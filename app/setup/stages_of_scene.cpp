@@ -76,7 +76,10 @@ std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene&
   return all;
 }
 
-Stage stage_of(const RunSpec& spec) { return {.duration = spec.duration, .damping = spec.damping, .where = spec.where}; }
+Stage stage_of(const RunSpec& spec)
+{
+  return {.duration = spec.duration, .damping = spec.damping, .holds_pore_pressure = spec.hold_pore_pressure, .where = spec.where};
+}
 Stage stage_of(const GeostaticSpec& spec)
 {
   return {.duration = spec.duration,
@@ -176,8 +179,13 @@ void set_stages(const Scene& scene, SceneErrorCollector& errors, Setup<D>& setup
     Stage& stage = setup.stages[s];
     const K0Spec* const stress = initial_stress_of(scene.stages[s]);
     if (const auto* solved = std::get_if<StaticSpec>(&scene.stages[s]);
-        solved != nullptr && solved->grow.value_or(s == 0 && stress == nullptr && !any_table))
+        solved != nullptr && solved->grow.value_or(s == 0 && stress == nullptr && !any_table && !scene.initial)) {
       stage.ramp = stage.duration;
+      if (s == 0 && (stress != nullptr || any_table || scene.initial))
+        errors.add(
+            stage.where, "grow",
+            "the bodies begin with a stress, under which gravity and loads act from the beginning: leave grow out, or set it to false");
+    }
     if (stress == nullptr)
       continue;
     stage.start_stress = start_stress_of_bodies(*stress, scene, errors);

@@ -112,7 +112,6 @@ void FieldReader::read(const Node& node, const std::string& path, const Asked& a
     case ValueType::Kind::text: return read_scalar_of<std::string>(node, path, asked, value);
     case ValueType::Kind::word: return read_word(node, path, type, value);
     case ValueType::Kind::table: return read_table(node, path, as<Table>(value));
-    case ValueType::Kind::node: return read_node(node, path, as<Node>(value));
     case ValueType::Kind::named: return read_named(node, path, as<NamedNumbers>(value));
     case ValueType::Kind::list: return read_list(node, path, asked, type, value);
     case ValueType::Kind::optional: type.resize(value, 1); return read(node, path, asked, *type.entry, type.edit_at(value, 0));
@@ -166,12 +165,6 @@ void FieldReader::read_table(const Node& node, const std::string& path, Table& t
       problems_.add(node.items[i].place, path_to(path, i, node.items[i]), fmt::format("time {} s does not come after {} s", t1, t0));
 }
 
-void FieldReader::read_node(const Node& node, const std::string& path, Node& value)
-{
-  if (is(node.kind == Node::Kind::empty ? Node::Kind::scalar : node.kind, node, path, "a value"))
-    value = node;
-}
-
 void FieldReader::read_named(const Node& node, const std::string& path, NamedNumbers& numbers)
 {
   if (!is(Node::Kind::mapping, node, path, "a mapping {name: number}"))
@@ -210,7 +203,8 @@ void FieldReader::read_fields(Mapping& mapping, const StructType& type, void* ob
 void FieldReader::read_key(Mapping& mapping, const FieldType& field, void* value)
 {
   const Node* node = field.need == Need::required ? mapping.find_required(field.key, field.unit) : mapping.find(field.key);
-  if (node != nullptr)
+  const bool is_none = node != nullptr && field.may_be_empty() && node->kind == Node::Kind::list && node->items.empty();
+  if (node != nullptr && !is_none)
     read(*node, mapping.path_of(field.key), {field.range, field.unit}, *field.type, value);
 }
 

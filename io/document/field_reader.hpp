@@ -32,7 +32,6 @@ class FieldReader {
   void read_word(const Node& node, const std::string& path, const ValueType& type, void* value);
   void read_list(const Node& node, const std::string& path, const Asked& asked, const ValueType& type, void* list);
   void read_table(const Node& node, const std::string& path, Table& table);
-  void read_node(const Node& node, const std::string& path, Node& value);
   void read_named(const Node& node, const std::string& path, NamedNumbers& numbers);
   void read_mapping(const Node& node, const std::string& path, const ValueType& type, void* value);
   void read_fields(Mapping& mapping, const StructType& type, void* object);

@@ -100,8 +100,6 @@ ValueType make_value_type()
     return {.kind = Kind::text};
   else if constexpr (std::same_as<T, Table>)
     return {.kind = Kind::table};
-  else if constexpr (std::same_as<T, Node>)
-    return {.kind = Kind::node};
   else if constexpr (std::same_as<T, NamedNumbers>)
     return {.kind = Kind::named};
   else if constexpr (std::is_enum_v<T>)

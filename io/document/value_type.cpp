@@ -39,7 +39,6 @@ std::string default_text(const ValueType& type, const void* value, const Range& 
     }
     case ValueType::Kind::table:
     case ValueType::Kind::choice:
-    case ValueType::Kind::node:
     case ValueType::Kind::named: break;
   }
   return "none";

@@ -27,7 +27,6 @@ struct ValueType {
     optional,      ///< std::optional
     mapping,       ///< a struct with fields()
     choice,        ///< one of several structs: what choices_of() takes
-    node,          ///< Node: any value, as it is written
     named,         ///< NamedNumbers: a mapping of numbers
   };
   Kind kind;
@@ -53,6 +52,13 @@ struct FieldType {
   bool is_alternative = false;  ///< the key names one of several structs, whose fields stand in the same mapping
   const ValueType* type = nullptr;
   std::ptrdiff_t offset = 0;  ///< of the member in the struct [bytes]
+
+  /// Whether an empty list is as none: of structs that need not be given, such as `loads: []`.
+  bool may_be_empty() const noexcept
+  {
+    return need == Need::optional && type->kind == ValueType::Kind::list && type->length == 0 &&
+           (type->entry->kind == ValueType::Kind::mapping || type->entry->kind == ValueType::Kind::choice);
+  }
 
   void* member_of(void* object) const noexcept { return static_cast<std::byte*>(object) + offset; }
   const void* member_of(const void* object) const noexcept { return static_cast<const std::byte*>(object) + offset; }

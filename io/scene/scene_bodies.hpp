@@ -13,6 +13,7 @@
 #include "io/scene/scene_start_state.hpp"
 #include "io/scene/shape.hpp"
 #include "materials/interface/any_law.hpp"
+#include "materials/variation/parameter_variation.hpp"
 #include "solver/options/reference_options.hpp"
 
 namespace talus {
@@ -21,12 +22,16 @@ struct MaterialSpec {
   std::string name;
   std::optional<BulkViscosity> bulk_viscosity;
   AnyLaw law;
+  std::vector<ParameterVariation> variation;
   SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &MaterialSpec::name, any, "-", "bodies refer to it"),
                       group("bulk_viscosity", &MaterialSpec::bulk_viscosity,
                             "artificial viscous pressure where the volume shrinks, against ringing behind shocks; default none"),
+                      optional_list("variation", &MaterialSpec::variation,
+                                    "parameters of the law that vary in space as random fields; each particle has the value of the place "
+                                    "where it gets the material"),
                       alternative("law", &MaterialSpec::law, "constitutive law; its parameters are keys of the same mapping")};
   }
 };
@@ -54,8 +59,8 @@ struct BodySpec {
                  "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, 10, 14, ...; default by accuracy: 3, 4, 12 "
                  "in 2-D and 4, 4, 14 in 3-D"),
         optional("f_bar", &BodySpec::f_bar, any, "-",
-                 "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
-                 "johnson_cook, whose flow keeps the volume, false otherwise"),
+                 "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises, "
+                 "johnson_cook and mechanical_threshold, whose flow keeps the volume, false otherwise"),
         group("reference", &BodySpec::reference,
               "the configuration to which weights and gradients belong; default the present one, renewed in each step"),
         optional("velocity", &BodySpec::velocity, any, "m/s",

@@ -6,6 +6,7 @@
 #include "io/output/output_fields.hpp"
 #include "io/scene/scene.hpp"
 #include "io/scene/scene_rule_base.hpp"
+#include "materials/interface/varied_law.hpp"
 
 namespace talus {
 
@@ -158,6 +159,10 @@ class OutputRules : private SceneRuleBase {
       if (misspelt || among(used)(material.name))
         for (const HistoryVariable& variable : material.law.description().variables)
           known.push_back({std::string(variable.key), variable.components});
+    for (const MaterialSpec& material : scene_.materials)
+      if (misspelt || among(used)(material.name))
+        for (const ParameterVariation& one : material.variation)
+          known.push_back({name_of_factor(one.parameter), 1});
     return known;
   }
 

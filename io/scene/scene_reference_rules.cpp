@@ -22,6 +22,8 @@ class ReferenceRules : private SceneRuleBase {
         add(path, "heat is conducted between present positions: leave this out, or the conductivity");
       if (has_law(body, [](const ConstitutiveLaw& law) { return law.strain_averaging().has_value(); }))
         add(path, "plastic strain is averaged between present positions: leave this out, or the softening_length");
+      if (scene_.water && scene_.water->flow)
+        add(path, "water flows between present positions: leave this out, or water.flow");
       if (body.reference->update == ReferenceUpdate::never)
         for (const std::string& contact : contacts_of_body(scene_, body))
           add(path + ".update", fmt::format("{}; only `adaptive` knows where the body is", contact));

@@ -18,6 +18,7 @@ class Rules : private SceneRuleBase {
     append(broken_mesh_rules(scene_));
     time();
     materials_and_bodies();
+    append(broken_variation_rules(scene_));
     contacts();
     cuts();
     append(broken_rigid_rules(scene_));

@@ -20,6 +20,8 @@ std::vector<Finding> broken_output_rules(const Scene& scene);
 std::vector<Finding> broken_stage_rules(const Scene& scene);
 /// The errors of the block `rigid`.
 std::vector<Finding> broken_rigid_rules(const Scene& scene);
+/// The errors of the lists `variation` of materials.
+std::vector<Finding> broken_variation_rules(const Scene& scene);
 /// The errors of the key `reference` of bodies.
 std::vector<Finding> broken_reference_rules(const Scene& scene);
 

@@ -56,6 +56,9 @@ class StageRules : private SceneRuleBase {
     const std::string at = fmt::format("stages[{}]", s);
     if (is_solved(scene_.stages[static_cast<std::size_t>(s)]))
       solved(at);
+    if (const auto* run = std::get_if<RunSpec>(&scene_.stages[static_cast<std::size_t>(s)]);
+        run != nullptr && run->hold_pore_pressure && !(scene_.water && scene_.water->flow))
+      add(at + ".hold_pore_pressure", "no water flows in this scene, whose pressures could be held: leave this out, or give water.flow");
     if (suspends_yielding(scene_.stages[static_cast<std::size_t>(s)]))
       knows_no_suspension(at + ".elastic");
     for (std::size_t i = 0; i < changes.appear.size(); ++i)

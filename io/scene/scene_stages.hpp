@@ -182,12 +182,15 @@ struct GeostaticSpec : StageChanges {
 struct RunSpec : StageChanges {
   static constexpr std::string_view name = "run";
   Real duration{}, damping = 0;
+  bool hold_pore_pressure = false;
   SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple_cat(
         std::tuple{required("duration", &RunSpec::duration, positive, "s", "length of the stage"),
-                   optional("damping", &RunSpec::damping, from_to_below(0, 1), "-", "local damping; 0 for anything that flows")},
+                   optional("damping", &RunSpec::damping, from_to_below(0, 1), "-", "local damping; 0 for anything that flows"),
+                   optional("hold_pore_pressure", &RunSpec::hold_pore_pressure, any, "-",
+                            "water that flows stands still and keeps its pressures, as in a geostatic stage")},
         StageChanges::fields());
   }
 };
@@ -217,8 +220,8 @@ struct StaticSpec : StageChanges {
                 "the stage fails if at its end a larger share of the loads is out of balance without the stiffness that the solver gives "
                 "to displacements that the kernel does not see"),
             optional("grow", &StaticSpec::grow, any, "-",
-                     "whether gravity and loads grow from zero; default true in the first stage without initial_stress and tables of "
-                     "bodies, else false: they "
+                     "whether gravity and loads grow from zero; default true in the first stage if its bodies begin without "
+                     "stress, else false: they "
                      "act from its beginning, and tables and prescribed velocities alone change in it"),
             optional("duration", &StaticSpec::duration, positive, "s",
                      "by how much time goes on, for tables, prescribed velocities and outputs; rates are those of this time"),

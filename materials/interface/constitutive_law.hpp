@@ -7,7 +7,7 @@
 
 #include "materials/interface/history_rows.hpp"
 #include "materials/interface/stress_strip.hpp"
-#include "materials/law.hpp"
+#include "materials/parts/law.hpp"
 
 namespace talus {
 

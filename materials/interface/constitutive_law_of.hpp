@@ -8,8 +8,8 @@
 #include "core/strip_column.hpp"
 #include "core/type_list.hpp"
 #include "materials/interface/stress_pack.hpp"
-#include "materials/strength.hpp"
-#include "materials/weakly_compressible.hpp"
+#include "materials/parts/strength.hpp"
+#include "materials/parts/weakly_compressible.hpp"
 
 namespace talus {
 
@@ -27,6 +27,41 @@ auto variables_of()
                      static_cast<int>(sizeof(Value) / sizeof(Real))};
   });
   return all;
+}
+/// Particles i to i + 3 of the strip, or those up to its end.  L is final, and answers for several particles at once.
+template <int D, class L>
+[[gnu::flatten]] void update_pack(const L& law, const Material& material, const StressStrip<D>& strip, std::size_t i,
+                                  StressLanes& sums) noexcept
+{
+  const MatOf<D> rate = strip.L.load(i);
+  const SimdReal volume_before = strip.volume.load(i), shrinking = max(-SimdReal(rate.trace()), 0);
+  const Mat3Of<SimdReal> F = move(strip, i, rate);
+  const SimdReal J = F.determinant();
+  take_volume(strip, i, J);
+
+  const Sym3Of<SimdReal> before = strip.stress.load(i);
+  Mat3Of<SimdReal> F_of_law = F, L_of_law = embed(rate), stress_of_law = unpack(before);
+  if (material.averages_volume)
+    average_volume(strip, i, J, F_of_law, L_of_law);
+  StateLanes<typename L::State> states{strip.history.first + i, strip.history.stride, lanes_of(strip, i)};
+  const SimdReal speed_of_waves = law.wave_speed(F_of_law, states);
+  const auto [viscous, pore] = find_pressures(material, strip, i, shrinking, speed_of_waves, stress_of_law);
+  Mat3Of<SimdReal> after = law.update({F_of_law, L_of_law, stress_of_law, strip.dt, viscous, strip.elastic}, states);
+  after.diagonal().array() -= viscous + pore;
+
+  const Sym3Of<SimdReal> stress = talus::pack(after);
+  const auto sound = take_stress(strip, i, J, stress);
+  const SimdReal work = work_of(strip, i, rate, before, volume_before, stress);
+  count(material, strip, i, sound, work, speed_of_waves, shrinking, law.diffusivity(), sums);
+}
+
+template <int D, class L>
+StressSums update_strip(const L& law, const Material& material, const StressStrip<D>& strip) noexcept
+{
+  StressLanes lanes;
+  for (std::size_t i = 0; i < strip.n; i += pack_size)
+    update_pack(law, material, strip, i, lanes);
+  return lanes.total();
 }
 }  // namespace detail
 
@@ -108,11 +143,11 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   }
   StressSums update_stress(const Material& material, const StressStrip<2>& strip) const noexcept override
   {
-    return update_strip(material, strip);
+    return detail::update_strip(*this, material, strip);
   }
   StressSums update_stress(const Material& material, const StressStrip<3>& strip) const noexcept override
   {
-    return update_strip(material, strip);
+    return detail::update_strip(*this, material, strip);
   }
 
   Real wave_speed(const Mat3& F) const noexcept override { return law_.wave_speed(F, constants_); }
@@ -184,36 +219,6 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
       return law_.wave_speed(F, state, constants_);
     else
       return law_.wave_speed(F, constants_);
-  }
-
-  template <int D>
-  StressSums update_strip(const Material& material, const StressStrip<D>& strip) const noexcept
-  {
-    detail::StressLanes lanes;
-    for (std::size_t i = 0; i < strip.n; i += pack_size)
-      update_pack(material, strip, i, lanes);
-    return lanes.total();
-  }
-
-  /// Particles i to i + 3 of the strip, or those up to its end.
-  template <int D>
-  [[gnu::flatten]] void update_pack(const Material& material, const StressStrip<D>& strip, std::size_t i,
-                                    detail::StressLanes& sums) const noexcept
-  {
-    const MatOf<D> rate = strip.L.load(i);
-    const SimdReal volume_before = strip.volume.load(i), shrinking = max(-SimdReal(rate.trace()), 0);
-    Mat3Of<SimdReal> F, velocity_gradient = embed(rate);
-    const SimdReal J = detail::deform(strip, i, rate, F);
-    const Sym3Of<SimdReal> stored = strip.stress.load(i);
-    Mat3Of<SimdReal> stress = unpack(stored);
-    if (material.averages_volume)
-      detail::average_volume(strip, i, J, F, velocity_gradient);
-    StateLanes<State> states{strip.history.first + i, strip.history.stride, detail::lanes_of(strip, i)};
-    const SimdReal speed_of_waves = wave_speed(F, states);
-    const detail::StepPressures pressures = detail::find_pressures(material, strip, i, shrinking, speed_of_waves, stress);
-    const Mat3Of<SimdReal> after = update({F, velocity_gradient, stress, strip.dt, pressures.viscous, strip.elastic}, states);
-    detail::take_answer<D>(after, material, strip, i, {rate, stored, J, volume_before, shrinking, speed_of_waves, pressures}, diffusivity(),
-                           sums);
   }
 
   L law_;

@@ -6,8 +6,8 @@
 
 #include "core/strip_column.hpp"
 #include "materials/interface/talus_law.h"
-#include "materials/law.hpp"
-#include "materials/logarithm.hpp"
+#include "materials/parts/law.hpp"
+#include "materials/parts/logarithm.hpp"
 
 namespace talus {
 

@@ -262,8 +262,9 @@ StressSums OwnLaw::update_strip(const Material& material, const StressStrip<D>& 
     Pack& found = packs.emplace_back();
     found.rate = strip.L.load(i), found.stored = strip.stress.load(i), found.volume_before = strip.volume.load(i);
     found.shrinking = max(-SimdReal(found.rate.trace()), 0);
-    Mat3Of<SimdReal> F, L = embed(found.rate), stress = unpack(found.stored);
-    found.J = detail::deform(strip, i, found.rate, F);
+    Mat3Of<SimdReal> F = detail::move(strip, i, found.rate), L = embed(found.rate), stress = unpack(found.stored);
+    found.J = F.determinant();
+    detail::take_volume(strip, i, found.J);
     if (material.averages_volume)
       detail::average_volume(strip, i, found.J, F, L);
     found.stretched = F.determinant();
@@ -297,10 +298,11 @@ StressSums OwnLaw::update_strip(const Material& material, const StressStrip<D>& 
                           modulus[lane]));
     Sym3Of<SimdReal> stress = arrays.stress().load(i);
     stress[0] = where(found.J > 0 && bounds_step, stress[0], std::numeric_limits<Real>::quiet_NaN());
+    stress = add_diagonal(stress, -(found.pressures.viscous + found.pressures.pore));
+    const auto sound = detail::take_stress(strip, i, found.J, stress);
+    const SimdReal work = detail::work_of(strip, i, found.rate, found.stored, found.volume_before, stress);
     const SimdReal speed = sqrt(SimdReal(modulus * found.stretched / density_));
-    detail::take_answer<D>(unpack(stress), material, strip, i,
-                           {found.rate, found.stored, found.J, found.volume_before, found.shrinking, speed, found.pressures}, diffusivity(),
-                           lanes);
+    detail::count(material, strip, i, sound, work, speed, found.shrinking, diffusivity(), lanes);
   }
   return lanes.total();
 }

@@ -40,13 +40,6 @@ SimdReal stress_power(const Sym3Of<SimdReal>& a, const MatOf<D>& L) noexcept
   return power;
 }
 
-/// Reports the particle in a lane of the pack that begins at i.
-template <int D>
-[[gnu::always_inline]] inline void report(const StressStrip<D>& strip, std::size_t i, int lane, Trouble trouble) noexcept
-{
-  strip.errors->report(strip.id[i + static_cast<std::size_t>(lane)], trouble);
-}
-
 /// Particles of the pack that begins at i; lanes beyond repeat the last one.
 template <int D>
 int lanes_of(const StressStrip<D>& strip, std::size_t i) noexcept
@@ -54,25 +47,45 @@ int lanes_of(const StressStrip<D>& strip, std::size_t i) noexcept
   return static_cast<int>(std::min<std::size_t>(pack_size, strip.n - i));
 }
 
-// The parts of a stress update, of particles i to i + 3 of a strip or those up to its end.  They are functions of local variables, all inlined: as
-// members of one object the same numbers were kept in memory, and the update took 15 % longer.
-
-/// Deforms particles i to i + 3 of a strip, or those up to its end: F by `rate`, and the volume.  Returns det F; not above 0 where it reports.
+/// Reports particles of the pack that begins at i whose volume is not above zero.
 template <int D>
-[[gnu::always_inline]] inline SimdReal deform(const StressStrip<D>& strip, std::size_t i, const MatOf<D>& rate,
-                                              Mat3Of<SimdReal>& F) noexcept
+[[gnu::noinline, gnu::cold]] void report_inverted(const StressStrip<D>& strip, std::size_t i, SimdReal J) noexcept
 {
-  F = strip.F.load(i);
+  for (int lane = 0; lane < lanes_of(strip, i); ++lane)
+    if (!(J[lane] > 0))  // true for NaN
+      strip.errors->report(strip.id[i + static_cast<std::size_t>(lane)], std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
+}
+
+/// Reports those for whose deformation the law has no answer: their sum of stresses is not finite.
+template <int D>
+[[gnu::noinline, gnu::cold]] void report_no_answer(const StressStrip<D>& strip, std::size_t i, SimdReal J, SimdReal sum_of_stress) noexcept
+{
+  for (int lane = 0; lane < lanes_of(strip, i); ++lane)
+    if (J[lane] > 0 && !std::isfinite(sum_of_stress[lane]))
+      strip.errors->report(strip.id[i + static_cast<std::size_t>(lane)], Trouble::no_answer);
+}
+
+// The parts of a stress update, of particles i to i + 3 of a strip or those up to its end.  They are functions of a few local variables, all
+// inlined: with the same numbers as members of an object, or references to them in one, compilers keep them in memory, and the update takes 10 to
+// 15 % longer.
+
+/// Deforms particles by `rate`; returns F.
+template <int D>
+[[gnu::always_inline]] inline Mat3Of<SimdReal> move(const StressStrip<D>& strip, std::size_t i, const MatOf<D>& rate) noexcept
+{
+  Mat3Of<SimdReal> F = strip.F.load(i);
   F.template topLeftCorner<D, D>() += SimdReal(strip.dt) * (rate * F.template topLeftCorner<D, D>());
   strip.F.store(i, F);
-  const SimdReal J = F.determinant();
-  const auto good = J > 0;  // false for NaN
-  if (!all_of(good))
-    for (int lane = 0; lane < lanes_of(strip, i); ++lane)
-      if (!good[lane])
-        report(strip, i, lane, std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
+  return F;
+}
+
+/// Their volume for J = det F; reports where that is not above zero.
+template <int D>
+[[gnu::always_inline]] inline void take_volume(const StressStrip<D>& strip, std::size_t i, const SimdReal& J) noexcept
+{
+  if (!all_of(J > 0))
+    report_inverted(strip, i, J);
   strip.volume.store(i, J * strip.volume0.load(i));
-  return J;
 }
 
 /// F and L as the law sees them, where bodies average their volume: see update_stress() of material.hpp.
@@ -115,37 +128,37 @@ template <int D>
   return pressures;
 }
 
-/// What a step has found before the law answers.
+/// Stores the stress with the answer of the law, and reports where there is none.  Returns which particles are sound.
 template <int D>
-struct DeformedPack {
-  const MatOf<D>& rate;
-  const Sym3Of<SimdReal>& stored;  ///< stress before the step
-  const SimdReal &J, &volume_before, &shrinking, &speed_of_waves;
-  const StepPressures& pressures;
-};
-
-/// Stores the answer of the law and reports.
-template <int D>
-[[gnu::always_inline]] inline void take_answer(Mat3Of<SimdReal> after, const Material& material, const StressStrip<D>& strip, std::size_t i,
-                                               const DeformedPack<D>& found, const std::optional<Real>& diffusivity,
-                                               StressLanes& sums) noexcept
+[[gnu::always_inline]] inline SimdReal::Mask take_stress(const StressStrip<D>& strip, std::size_t i, const SimdReal& J,
+                                                         const Sym3Of<SimdReal>& stress) noexcept
 {
-  after.diagonal().array() -= found.pressures.viscous + found.pressures.pore;
-  const Sym3Of<SimdReal> stress = talus::pack(after);
-  const auto good = found.J > 0, answered = isfinite(SimdReal(stress.sum()));
+  const SimdReal sum_of_stress = stress.sum();
+  const auto answered = isfinite(sum_of_stress);
   if (!all_of(answered))
-    for (int lane = 0; lane < lanes_of(strip, i); ++lane)
-      if (good[lane] && !answered[lane])
-        report(strip, i, lane, Trouble::no_answer);
+    report_no_answer(strip, i, J, sum_of_stress);
   strip.stress.store(i, stress);
+  return J > 0 && answered;
+}
 
-  const SimdReal work =
-      0.5 * strip.dt *
-      (found.volume_before * stress_power<D>(found.stored, found.rate) + strip.volume.load(i) * stress_power<D>(stress, found.rate));
+/// Work of the stress in the step [J]; `before` and `volume_before` are those at its begin.
+template <int D>
+[[gnu::always_inline]] inline SimdReal work_of(const StressStrip<D>& strip, std::size_t i, const MatOf<D>& rate,
+                                               const Sym3Of<SimdReal>& before, const SimdReal& volume_before,
+                                               const Sym3Of<SimdReal>& stress) noexcept
+{
+  return 0.5 * strip.dt * (volume_before * stress_power<D>(before, rate) + strip.volume.load(i) * stress_power<D>(stress, rate));
+}
+
+/// Adds sound particles to what the step reports.
+template <int D>
+[[gnu::always_inline]] inline void count(const Material& material, const StressStrip<D>& strip, std::size_t i, const SimdReal::Mask& sound,
+                                         const SimdReal& work, const SimdReal& speed_of_waves, const SimdReal& shrinking,
+                                         const std::optional<Real>& diffusivity, StressLanes& sums) noexcept
+{
   const SimdReal speed = sqrt(SimdReal(strip.v.load(i).squaredNorm()));
-  const SimdReal crossing =
-      crossing_time<D>(diffusivity, material.viscosity, strip.altitude.load(i), speed, found.speed_of_waves, found.shrinking);
-  const auto sound = good && answered, counts = sound && SimdReal(Pack{0, 1, 2, 3}) < static_cast<Real>(lanes_of(strip, i));
+  const SimdReal crossing = crossing_time<D>(diffusivity, material.viscosity, strip.altitude.load(i), speed, speed_of_waves, shrinking);
+  const auto counts = sound && SimdReal(Pack{0, 1, 2, 3}) < static_cast<Real>(lanes_of(strip, i));
   sums.work += where(counts, work, 0);  // lanes beyond the last particle
   sums.crossing = where(counts, min(sums.crossing, crossing), sums.crossing);
   sums.speed = where(counts, max(sums.speed, speed), sums.speed);

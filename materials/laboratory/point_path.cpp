@@ -182,10 +182,10 @@ std::vector<std::string> history_names(const ConstitutiveLaw& law)
   std::vector<std::string> all;
   for (const HistoryVariable& variable : law.variables())
     if (variable.components == 1)
-      all.emplace_back(variable.key);
+      all.push_back(fmt::format("{} [{}]", variable.key, variable.unit));
     else
       for (const std::string_view name : names)
-        all.push_back(fmt::format("{}_{}", variable.key, name));
+        all.push_back(fmt::format("{}_{} [{}]", variable.key, name, variable.unit));
   return all;
 }
 

@@ -63,7 +63,7 @@ struct PointRow {
   std::vector<Real> history;  ///< under PointTable::history_names
 };
 struct PointTable {
-  std::vector<std::string> history_names;  ///< a tensor appears as key_xx, key_yy, key_zz, key_xy, key_yz, key_xz
+  std::vector<std::string> history_names;  ///< with units; a tensor appears as key_xx, key_yy, key_zz, key_xy, key_yz, key_xz
   std::vector<PointRow> rows;              ///< the start, then the end of every step
 };
 

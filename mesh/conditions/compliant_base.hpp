@@ -28,7 +28,7 @@ struct CompliantBaseOptions : BoundaryCommon, MotionOptions {
                  "of the particles in the wave that comes up, half of what an outcrop of the halfspace would show: one number per "
                  "dimension; with a record its direction; default none"),
         optional("table", &MotionOptions::table, any, "-",
-                 "factor of velocity in time: list of [time, factor], from the beginning of the first stage that is not geostatic"),
+                 "factor of velocity in time: list of [time, factor], from the beginning of the first stage with inertia (type run)"),
         group("record", &MotionOptions::record, "motion from a file in the place of a table, from the same time on")};
   }
   void check(std::vector<std::string>& problems) const

@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// The dynamic phase begins with the first stage that is not geostatic.  Records and waves count their time from there, and absorbing
+/// The dynamic phase begins with the first stage with inertia (type run).  Records and waves count their time from there, and absorbing
 /// boundaries, which hold the model before, become dashpots.
 struct DynamicPhase {
   bool begun = false;

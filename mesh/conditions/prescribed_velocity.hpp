@@ -15,8 +15,9 @@ struct PrescribedVelocityOptions : BoundaryCommon, MotionOptions {
         on_key("node, facet or cell group moved"),
         required("velocity", &MotionOptions::velocity, any, "m/s", "one number per dimension; with a record its direction"),
         optional("table", &MotionOptions::table, any, "-", "factor in time: list of [time, factor]"),
-        group("record", &MotionOptions::record,
-              "motion from a file in the place of a table; it begins with the first stage that is not geostatic, and before there is none"),
+        group(
+            "record", &MotionOptions::record,
+            "motion from a file in the place of a table; it begins with the first stage with inertia (type run), and before there is none"),
         during_key()};
   }
   void check(std::vector<std::string>& problems) const { check_motion(problems); }

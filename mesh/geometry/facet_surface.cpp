@@ -65,9 +65,25 @@ void sort_facets(const std::vector<Vec<D>>& corners, std::vector<std::array<Inde
     facets[f] = sorted[f].second;
 }
 
+/// Files of surfaces may have triangles two of whose corners are at one place: they cover nothing, and their edges would have no neighbours.
+template <int D>
+void drop_collapsed(const std::vector<Vec<D>>& corners, std::vector<std::array<Index, D>>& facets)
+{
+  const auto is_collapsed = [&](const std::array<Index, D>& facet) {
+    for (std::size_t k = 0; k < D; ++k)
+      for (std::size_t l = k + 1; l < D; ++l)
+        if (corners[static_cast<std::size_t>(facet[k])] == corners[static_cast<std::size_t>(facet[l])])
+          return true;
+    return false;
+  };
+  if (!std::ranges::all_of(facets, is_collapsed))
+    std::erase_if(facets, is_collapsed);
+}
+
 template <int D>
 std::vector<std::array<Index, D>> prepared(std::vector<Vec<D>>& corners, std::vector<std::array<Index, D>> facets)
 {
+  drop_collapsed<D>(corners, facets);
   merge_corners<D>(corners, facets);
   sort_facets<D>(corners, facets);
   return facets;
@@ -212,9 +228,10 @@ SurfaceDistance<D> FacetSurface<D>::distance(const Vec<D>& x) const
   const Vec<D> away = x - nearest.place;
   const Real distance = away.norm();
   const bool behind = away.dot(outward) < 0;
+  const Vec<D> rim_normal = at.on_rim ? Vec<D>(outward.stableNormalized()) : Vec<D>(Vec<D>::Zero());
   if (distance <= round_off * (size_ + x.norm()))  // its direction would be that of round-off
-    return {behind ? -distance : distance, outward.stableNormalized(), at.on_rim};
-  return {behind ? -distance : distance, (behind ? -1 : 1) / distance * away, at.on_rim};
+    return {behind ? -distance : distance, outward.stableNormalized(), at.on_rim, rim_normal};
+  return {behind ? -distance : distance, (behind ? -1 : 1) / distance * away, at.on_rim, rim_normal};
 }
 
 namespace {
@@ -308,23 +325,27 @@ std::string FacetSurface<D>::fault_of_sheet() const
 template <int D>
 EnclosedSolid<D> FacetSurface<D>::sheet() const
 {
+  const Vec<D> from = corners_.front();  // as in solid()
   EnclosedSolid<D> sheet;
+  Vec<D> centre = Vec<D>::Zero();
   Mat<D> second = Mat<D>::Zero();  // integral of x x^T
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const auto at = corners_of(f);
+    auto at = corners_of(f);
     const Real area = area_of<D>(at.data()).norm();
     Vec<D> sum = Vec<D>::Zero();
     Mat<D> products = Mat<D>::Zero();
-    for (const Vec<D>& corner : at) {
+    for (Vec<D>& corner : at) {
+      corner -= from;
       sum += corner;
       products += corner * corner.transpose();
     }
     sheet.volume += area;
-    sheet.centre += area / D * sum;
+    centre += area / D * sum;
     second += area / (D * (D + 1)) * (products + sum * sum.transpose());
   }
-  sheet.centre /= sheet.volume;
-  second -= sheet.volume * sheet.centre * sheet.centre.transpose();
+  centre /= sheet.volume;
+  second -= sheet.volume * centre * centre.transpose();
+  sheet.centre = from + centre;
   Mat3 spread = Mat3::Zero();
   spread.template topLeftCorner<D, D>() = second;
   sheet.inertia = spread.trace() * Mat3::Identity() - spread;

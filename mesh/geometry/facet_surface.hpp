@@ -14,6 +14,7 @@ struct SurfaceDistance {
   Real distance{};
   Vec<D> normal = Vec<D>::Zero();
   bool on_rim = false;  ///< the nearest point lies on the rim of an open surface; behind is then what its facet there has behind
+  Vec<D> rim_normal = Vec<D>::Zero();  ///< unit normal of the front of the facets at that point of the rim; zero elsewhere
 };
 
 /// Volume [m^D], centre [m] and moments of inertia of what a closed surface encloses, for a density of 1.
@@ -35,7 +36,7 @@ class FacetSurface {
  public:
   using Corners = std::vector<Vec<D>>;
   using Facets = std::vector<std::array<Index, D>>;
-  /// Corners at one place [m] are one corner.  There is at least one facet.
+  /// Corners at one place [m] are one corner; facets two of whose corners are one are left out, unless all are such.  There is at least one.
   FacetSurface(Corners corners, Facets facets);
 
   /// The distance to the nearest point of the surface; what is behind is decided by the mean normal of the facets that meet there, weighted by

@@ -68,6 +68,7 @@ def _add_calibrate(commands: Any) -> None:
     one.add_argument("--out", type=Path, metavar="DIR", help="folder of runs and results; default runs/<name of the file>")
     one.add_argument("--jobs", type=_count, default=1, metavar="N", help="runs at a time; default 1")
     one.add_argument("--threads", type=_count, metavar="N", help="threads of each; default as for a run, with --jobs the cores over that")
+    one.add_argument("--launcher", metavar="WORDS", help="what each run is started by, such as \"mpirun -n 4\"")
     one.add_argument("--no-pictures", dest="pictures", action="store_false", help="draw nothing")
     one.add_argument("--quiet", action="store_true", help="only the results")
     one.add_argument("--program", type=Path, metavar="PATH", help="the program talus; default as in talus.find_program")
@@ -80,8 +81,8 @@ def _folder_of_calibration(options: argparse.Namespace) -> Path:
 
 def _calibrate(options: argparse.Namespace) -> int:
     out = _folder_of_calibration(options)
-    print(calibrate(options.file, out=out, jobs=options.jobs, threads=options.threads, pictures=options.pictures, program=options.program,
-                    tell=None if options.quiet else _tell))
+    print(calibrate(options.file, out=out, jobs=options.jobs, threads=options.threads, pictures=options.pictures,
+                    launcher=options.launcher, program=options.program, tell=None if options.quiet else _tell))
     print(f"results in {out}: calibration.json, calibration.csv, best.yaml{', calibration.png' if options.pictures else ''}")
     return 0
 

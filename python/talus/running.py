@@ -5,6 +5,7 @@ import contextlib
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -52,7 +53,8 @@ ProgressOption = Union[bool, Callable[[Progress], object], None]
 
 def run(scene: Scene, *, set: Mapping[str, Any] | None = None, out: str | os.PathLike[str] | None = None, threads: int | None = None,
         progress: ProgressOption = None, quick: bool = False, strict: bool = False, force: bool = False, until: int | None = None,
-        script: str | os.PathLike[str] | None = None, program: str | os.PathLike[str] | None = None) -> Run:
+        script: str | os.PathLike[str] | None = None, launcher: str | None = None,
+        program: str | os.PathLike[str] | None = None) -> Run:
     """Runs a scene to its end and returns its results.
 
     scene     path of a scene file; or a scene as a dictionary, which is written to the file OUT.yaml beside the folder OUT (see
@@ -67,6 +69,7 @@ def run(scene: Scene, *, set: Mapping[str, Any] | None = None, out: str | os.Pat
     force     replaces a run that was stopped or has failed and could be resumed
     until     stops after this number of steps with a checkpoint; the status is then "stopped"
     script    file with functions start, step, history and end, which the run calls between its steps; what it prints is in `Run.log`
+    launcher  words before the program, such as "mpirun -n 4"
     program   the program talus; default: `find_program`
 
     Raises SceneError for wrong input, with the place of each error, RunFailed if the run fails, EnvironmentFailure for a full disk or a
@@ -79,11 +82,12 @@ def run(scene: Scene, *, set: Mapping[str, Any] | None = None, out: str | os.Pat
     words = ["run", str(file), "--out", str(folder), *set_options(set), *_options(threads, quick=quick, strict=strict, force=force)]
     if script is not None:
         words += ["--script", str(Path(script).absolute())]
-    return _follow(found, [*words, *(["--until", str(until)] if until is not None else [])], folder, progress)
+    words += ["--until", str(until)] if until is not None else []
+    return _follow([*shlex.split(launcher or ""), str(found), *words], folder, progress)
 
 
 def resume(run: Run | str | os.PathLike[str], *, set: Mapping[str, Any] | None = None, out: str | os.PathLike[str] | None = None,
-           threads: int | None = None, progress: ProgressOption = None, until: int | None = None,
+           threads: int | None = None, progress: ProgressOption = None, until: int | None = None, launcher: str | None = None,
            program: str | os.PathLike[str] | None = None) -> Run:
     """Continues a run that was stopped, from its newest checkpoint, and returns its results.
 
@@ -96,7 +100,8 @@ def resume(run: Run | str | os.PathLike[str], *, set: Mapping[str, Any] | None =
     begin = run.folder if isinstance(run, Run) else Path(run)
     folder = Path(out) if out is not None else begin if begin.is_dir() else begin.parent.parent
     words = ["run", "--resume", str(begin), *(["--out", str(out)] if out is not None else []), *set_options(set), *_options(threads)]
-    return _follow(find_program(program), [*words, *(["--until", str(until)] if until is not None else [])], folder, progress)
+    words += ["--until", str(until)] if until is not None else []
+    return _follow([*shlex.split(launcher or ""), str(find_program(program)), *words], folder, progress)
 
 
 def check(scene: Scene, *, set: Mapping[str, Any] | None = None, program: str | os.PathLike[str] | None = None) -> str:
@@ -148,13 +153,13 @@ def _options(threads: int | None, **switches: bool) -> list[str]:
     return named + (["--threads", str(threads)] if threads is not None else [])
 
 
-def _follow(program: Path, words: Sequence[str], folder: Path, progress: ProgressOption) -> Run:
+def _follow(words: Sequence[str], folder: Path, progress: ProgressOption) -> Run:
     """Runs a command that writes results and reports its progress."""
     tell = _Bar() if progress is True else progress or None
     began = time.time_ns()
     with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as complained:
         # A session of its own: Ctrl-C reaches this process alone, which passes it on once; the second one would end the run at once
-        process = subprocess.Popen([program, *words], stdin=subprocess.DEVNULL, stdout=said, stderr=complained, start_new_session=True)
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=said, stderr=complained, start_new_session=True)
         try:
             last: Progress | None = None
             while (code := _wait(process)) is None:

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/parallel/exact_sum.hpp"
+#include "materials/interface/varied_law.hpp"
 
 namespace talus {
 
@@ -66,7 +67,7 @@ std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const 
         continue;
       const Real mass = particles.mass[i], volume = particles.volume0[i];
       const Real c = material.wave_speed(p - material.begin, particles.F[i]);
-      if (const auto shear = material.law().shear_modulus())
+      if (const auto shear = shear_modulus_of(material, p - material.begin))
         sums[at->second].add({mass, volume, volume * *shear, mass * c * c});
       else
         ++without_modulus;

@@ -39,6 +39,14 @@ FlowSystem<D>::FlowSystem(Communicator& ranks, const Mesh<D>& mesh, const Subdom
 }
 
 template <int D>
+void FlowSystem<D>::begin_stage()
+{
+  std::ranges::fill(at_, NodePressure::nothing);
+  for (std::vector<Real>* const of_nodes : {&change_, &right_, &given_, &residual_, &direction_, &lightness_})
+    std::ranges::fill(*of_nodes, 0);
+}
+
+template <int D>
 void FlowSystem<D>::find_rows(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step)
 {
   constexpr Real n_corners = D + 1;
@@ -109,7 +117,7 @@ void FlowSystem<D>::find_given_pressures(const FlowModel<D>& m, const FlowCells<
     for (const Index n : head.nodes)
       if (const Real depth = head.drained ? 0 : head.level(step.end) - mesh.node(n)[D - 1]; depth > 0)
         give(n, weight * depth);
-      else
+      else if (at_[to_size(n)] != NodePressure::given)  // by other water at this node
         drain(n);
 }
 

@@ -29,6 +29,8 @@ class FlowSystem {
   /// Of one of several ranks.  Collective.
   FlowSystem(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own);
 
+  /// Forgets what stages before have left at nodes that are not in use any more.
+  void begin_stage();
   /// Finds rows, given pressures and how velocities answer, for the pressures p0 at nodes that see water.  Collective.
   void prepare(const FlowModel<D>& m, const FlowCells<D>& cells, const FlowStep<D>& step, const std::vector<Real>& pressure);
   /// Finds p1 - p0; adds the iterations and the residual to the ledger.  Collective.

@@ -77,6 +77,13 @@ void PorePressure<D>::advance(const FlowModel<D>& m, const std::vector<Material>
   ledger.begun = true;
 }
 
+template <int D>
+void PorePressure<D>::begin_stage()
+{
+  std::ranges::fill(seen_, std::uint8_t{0});
+  system_->begin_stage();
+}
+
 template class PorePressure<2>;
 template class PorePressure<3>;
 

@@ -48,6 +48,9 @@ class PorePressure {
   void advance(const FlowModel<D>& m, const std::vector<Material>& materials, const ParticleStrips<D>& strips, const FlowStep<D>& step,
                FlowLedger& ledger, ExactSums<Real>& work);
 
+  /// Forgets what stages before have left at nodes that are not in use any more.
+  void begin_stage();
+
   /// Whether all vertices of a cell have seen water; not so in a cell that its first particles have just entered.
   bool knows(const Mesh<D>& mesh, Index cell) const noexcept
   {

@@ -165,7 +165,7 @@ void FlowSystem<D>::iterate(const FlowModel<D>& m, const FlowStep<D>& step, bool
     });
   }
   ledger.residual = begin_ > 0 ? std::sqrt(now / begin_) : begin_;
-  ledger.found = now <= enough;
+  ledger.found = std::abs(now) <= enough;
 }
 
 #define TALUS_INSTANTIATE(D)                                                                                      \

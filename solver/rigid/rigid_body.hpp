@@ -27,6 +27,9 @@ Vec<D> turned_arm(const Vec3& spin, const Vec<D>& arm) noexcept
 /// What facets are: the surface of a solid, or a sheet without thickness.
 enum class FacetsOf : std::uint8_t { solid, sheet };
 
+/// How far apart the points of its surface are at most at which a rigid body of facets is felt by others, for the radius around it [m].
+constexpr Real spacing_of_samples(Real radius) noexcept { return radius / 8; }
+
 /// The surface of a rigid body, about its centre of mass: a disk or ball of a radius, or facets.
 template <int D>
 class RigidShape {
@@ -38,13 +41,13 @@ class RigidShape {
   {
     for (const Vec<D>& corner : this->facets()->corners())
       radius_ = std::max(radius_, corner.norm());
-    samples_ = this->facets()->samples(radius_ / 8);
+    samples_ = this->facets()->samples(spacing_of_samples(radius_));
   }
   SurfaceDistance<D> distance(const Vec<D>& x) const
   {
     if (const Ball* ball = std::get_if<Ball>(&surface_)) {
       const Real r = x.norm();
-      return {r - ball->radius, r > 0 ? Vec<D>(x / r) : Vec<D>(Vec<D>::Unit(D - 1)), false};
+      return {r - ball->radius, r > 0 ? Vec<D>(x / r) : Vec<D>(Vec<D>::Unit(D - 1)), false, Vec<D>::Zero()};
     }
     return facets()->distance(x);
   }
@@ -105,7 +108,7 @@ struct RigidState {
   SurfaceDistance<D> distance(const RigidShape<D>& shape, const Vec<D>& place) const
   {
     const SurfaceDistance<D> there = shape.distance(arm_in_body(place));
-    return {there.distance, in_scene(there.normal), there.on_rim};
+    return {there.distance, in_scene(there.normal), there.on_rim, in_scene(there.rim_normal)};
   }
   /// The tensor of inertia in the axes of the scene [kg m^2].
   Mat3 inertia(const RigidBody<D>& body) const noexcept { return turn * body.inertia * turn.transpose(); }

@@ -19,10 +19,13 @@ struct Touch {
   Vec<D> normal = Vec<D>::Zero();                    ///< out of the rigid body, unit length
   Vec<D> place = Vec<D>::Zero();                     ///< on its surface [m]
   bool is_seen() const noexcept { return gap <= 0; }
-  /// The deeper one of two; of equally deep ones that with the smaller coordinates, so that their order does not matter.
+  /// The deeper one of two; of equally deep ones that with the smaller coordinates of place, then of normal, so that their order does not matter.
   friend bool operator<(const Touch& a, const Touch& b) noexcept
   {
-    return a.gap != b.gap ? a.gap < b.gap : std::ranges::lexicographical_compare(a.place, b.place);
+    if (a.gap != b.gap)
+      return a.gap < b.gap;
+    return a.place != b.place ? std::ranges::lexicographical_compare(a.place, b.place)
+                              : std::ranges::lexicographical_compare(a.normal, b.normal);
   }
   template <class Self>
   static auto parts(Self& self) noexcept
@@ -92,7 +95,7 @@ class RigidNodes {
     SurfaceDistance<D> distance(const Vec<D>& x) const
     {
       const SurfaceDistance<D> to = state.distance(shape, x);
-      return shape.is_sheet() && sheets.is_behind(field) ? SurfaceDistance<D>{-to.distance, -to.normal, to.on_rim} : to;
+      return shape.is_sheet() && sheets.is_behind(field) ? SurfaceDistance<D>{-to.distance, -to.normal, to.on_rim, -to.rim_normal} : to;
     }
   };
   void find_candidates(const Place& at, const Nodes<D>& nodes);

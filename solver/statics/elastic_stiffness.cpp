@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "materials/interface/varied_law.hpp"
+
 namespace talus {
 
 /// Of the P-wave modulus: the shear modulus of a law that does not tell it, Poisson's ratio being 0.3, and that of a fluid, which has none.
@@ -21,7 +23,7 @@ ElasticStiffness<D>::ElasticStiffness(const Mesh<D>& mesh, const State<D>& state
       const std::size_t i = to_size(p), c = to_size(particles.cell[i]);
       const Real speed = material.wave_speed(p - state.bodies[b].begin, particles.F[i]);
       const Real wave = particles.mass[i] * speed * speed;
-      const Real modulus = material.law().shear_modulus().value_or(shear_of_unknown * wave / particles.volume[i]);
+      const Real modulus = shear_modulus_of(material, p - state.bodies[b].begin).value_or(shear_of_unknown * wave / particles.volume[i]);
       filled_[c] += particles.volume[i];
       wave_[c] += wave;
       shear_[c] += fluid ? shear_of_fluid * wave : std::min(particles.volume[i] * modulus, wave / 2);

@@ -10,12 +10,6 @@
 
 namespace talus {
 
-/// Of the shear stiffness, that of displacements that averaged gradients do not see.  With less they alternate, with more it carries a part
-/// of a limit load (docs/theory/statics.md, benchmarks/equilibrium).
-constexpr Real stiffness_of_jumps = 0.1;
-/// Of this, what it has at least where the material yields.
-constexpr Real least_left = 0.25;
-
 template <int D>
 LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt) : m_(m), dt_(dt), time_(m.state.clock.time)
 {
@@ -65,18 +59,7 @@ void LoadIncrement<D>::set_stiffness()
 {
   const Problem<D>& problem = m_.problem;
   elastic_ = ElasticStiffness<D>(problem.mesh, m_.state);
-  std::vector<Real> filled = elastic_.filled(), shear = elastic_.shear();
-  shear_ = shear;
-  if (!problem.subdomain.alone()) {
-    cells_ = copies_of_cells(*problem.ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
-    for (std::vector<Real>* const values : {&filled, &shear}) {
-      cells_.send(*values, Numbers{});
-      cells_.take(*values, Numbers{});
-    }
-  }
-  for (Real& one : shear)
-    one *= stiffness_of_jumps;
-  jumps_ = GradientJumps<D>(problem.mesh, filled, shear);
+  jumps_.set_stiffness(problem, elastic_);
   jumps_.for_each_cell([&](Index c, Real stiffness) {
     if (problem.subdomain.alone() || problem.subdomain.owns_cell(c))
       elastic_.support(c, stiffness);
@@ -84,65 +67,13 @@ void LoadIncrement<D>::set_stiffness()
   stiffness_ = elastic_.of_nodes(problem, unknowns_);
 }
 
-/// The displacements of the nodes, and their gradients.
-template <int D>
-void LoadIncrement<D>::find_jumps()
-{
-  u_.assign(to_size(m_.problem.mesh.n_nodes()), Vec<D>::Zero());
-  nodes().in_use.for_each([&](Index n) { u_[to_size(n)] = dt_ * nodes().motion[to_size(n)].v; });
-  unknowns_.send(u_);
-  jumps_.find_gradients(m_.problem.mesh, u_);
-}
-
-/// Adds volume times stress of the particles in strips, by the cells in which a trial finds them.
-template <int D>
-void LoadIncrement<D>::add_stress(std::vector<Sym3>& of_cell) const
-{
-  const ParticleStrips<D>& strips = *m_.work.strips;
-  for (std::size_t key = 0; key < strips.keys(); ++key)
-    for (std::size_t s = 0; s < strips.strips(key).size(); ++s) {
-      const Strip& strip = strips.strips(key)[s];
-      const StripColumns<D> columns = strips.columns(strip);
-      std::size_t i = 0;
-      for (Index k = 0; k < strip_cells; ++k)
-        for (Index left = strip.count[to_size(k)]; left > 0; --left, ++i)
-          of_cell[to_size(strips.first_cell(key, static_cast<Index>(s)) + k)] += columns.volume.of(i) * columns.stress.of(i);
-    }
-}
-
-/// The forces of the displacements that averaged gradients do not see, at nodes with a motion of their own.  Their stiffness is that which
-/// the material has left in the trial, |change of the deviatoric stress| / (2 mu |deviatoric strain|): what yields is not held by it.
+/// The forces of the displacements that averaged gradients do not see, at nodes with a motion of their own.
 template <int D>
 void LoadIncrement<D>::find_jump_forces()
 {
-  const Mesh<D>& mesh = m_.problem.mesh;
-  std::vector<Sym3> stress(to_size(mesh.n_cells()), Sym3::Zero());
-  add_stress(stress);
-  const auto size_of_deviator = [](Sym3 of) {
-    of.template head<3>().array() -= of.template head<3>().sum() / 3;
-    return std::sqrt(of.template head<3>().squaredNorm() + 2 * of.template tail<3>().squaredNorm());
-  };
-  left_.assign(stress.size(), 1);
-  for (Index c = 0; c < mesh.n_cells(); ++c) {
-    const Real shear = shear_[to_size(c)];
-    if (!(shear > 0))
-      continue;
-    Mat3 gradient = Mat3::Zero();
-    gradient.template topLeftCorner<D, D>() = jumps_.seen_in(mesh, c);
-    const Mat3 strain = (gradient + gradient.transpose()) / 2;
-    const Real elastic = 2 * shear * (strain - strain.trace() / 3 * Mat3::Identity()).norm();
-    const Real found = size_of_deviator(stress[to_size(c)] - stress_[to_size(c)]);
-    if (2 * found < elastic)  // means over cells differ, also where it is elastic
-      left_[to_size(c)] = std::max(2 * found / elastic, least_left);
-  }
-  if (!m_.problem.subdomain.alone()) {
-    cells_.send(left_, Numbers{});
-    cells_.take(left_, Numbers{});
-  }
-  jump_force_.assign(u_.size(), Vec<D>::Zero());
-  jumps_.add_forces(mesh, left_, jump_force_);
+  jumps_.find(m_.problem, *m_.work.strips);
   m_.work.fields.front().small_mass_nodes.give(
-      mesh, m_.problem.own, [](Index, const Vec<D>& force) { return force; }, jump_force_);
+      m_.problem.mesh, m_.problem.own, [](Index, const Vec<D>& force) { return force; }, jumps_.of_nodes());
 }
 
 /// Which changes of displacement the conditions leave free, as they were in the last trial.
@@ -187,6 +118,16 @@ void LoadIncrement<D>::add_stiffness(const std::function<void(std::int64_t, std:
     add_block(unknowns_.node[k], unknowns_.node[k], stiffness_[k].all * (Mat<D>::Identity() - free_[k]) + stiffness_[k].beyond * free_[k]);
 }
 
+/// The displacements of all nodes in a trial.
+template <int D>
+std::vector<Vec<D>> LoadIncrement<D>::displacements()
+{
+  std::vector<Vec<D>> u(to_size(m_.problem.mesh.n_nodes()), Vec<D>::Zero());
+  nodes().in_use.for_each([&](Index n) { u[to_size(n)] = dt_ * nodes().motion[to_size(n)].v; });
+  unknowns_.send(u);
+  return u;
+}
+
 /// Moves the particles from where the increment begins; then finds the forces on the nodes, or stays there.  False where a particle cannot
 /// follow.
 template <int D>
@@ -213,7 +154,7 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   if (then == Then::stay)
     record_work(x);
   else if (then == Then::forces)
-    find_jumps();
+    jumps_.take(m_.problem.mesh, displacements());
   m_.transfer->send_motion(m_);
   clear_particle_sums(m_);
   find_renewed_bodies(m_);
@@ -223,8 +164,7 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   work.errors.take(m_.problem.ranks->min(work.errors.word()));
   if (then == Then::locate) {
     work.errors.clear();
-    stress_.assign(to_size(m_.problem.mesh.n_cells()), Sym3::Zero());
-    add_stress(stress_);
+    jumps_.begin(m_.problem.mesh, *m_.work.strips);
   }
   if (then != Then::forces)
     return true;
@@ -245,14 +185,15 @@ bool LoadIncrement<D>::find_residual(std::span<const Real> x, std::span<Real> f)
     return false;
   const Real end = time_ + dt_;
   const Vec<D> gravity = m_.problem.loads.gravity(end, m_.state.stage.ramp(end));
-  const Kick kick{time_, time_ + dt_ / 2};
+  const Real middle = time_ + dt_ / 2;  // whose velocity a boundary has in all of the increment
+  const Kick kick{middle, middle};
   reaction_.resize(unknowns_.node.size());
   weight_.resize(unknowns_.node.size());
   for (std::size_t k = 0; k < unknowns_.node.size(); ++k) {
     const Index n = unknowns_.node[k];
     const NodeSum<D>& sum = nodes().sum[to_size(n)];
     weight_[k] = sum.mass * gravity;
-    const Vec<D> u = displacement(x, k), r = sum.force + weight_[k] + jump_force_[to_size(n)];
+    const Vec<D> u = displacement(x, k), r = sum.force + weight_[k] + jumps_.at(n);
     const Real s = stiffness_[k].all;
     NodeMotion<D>& motion = nodes().motion[to_size(n)];
     motion.change = r / (s * dt_);
@@ -333,7 +274,8 @@ std::string LoadIncrement<D>::place_of_failure(std::span<const Real> x, std::spa
     for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
       if (const Real size = unit * Eigen::Map<const Vec<D>>(values.data() + k * D).norm(); size > most)
         most = size, where = m_.problem.mesh.node(unknowns_.node[k]);
-    const bool is_here = most > 0 && most == m_.problem.ranks->max(most);
+    const Real of_all = m_.problem.ranks->max(most);  // also of ranks on which nothing moves
+    const bool is_here = most > 0 && most == of_all;
     return m_.problem.ranks->first(
         is_here ? fmt::format("{} is at ({:.5g}), {:.3g} {}", what, fmt::join(where.begin(), where.end(), ", "), most, of_unit) : "");
   };

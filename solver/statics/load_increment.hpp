@@ -7,7 +7,7 @@
 #include "solver/model/model.hpp"
 #include "solver/options/equilibrium_options.hpp"
 #include "solver/statics/elastic_stiffness.hpp"
-#include "solver/statics/gradient_jumps.hpp"
+#include "solver/statics/jump_forces.hpp"
 #include "solver/statics/unknowns.hpp"
 
 namespace talus {
@@ -38,8 +38,7 @@ class LoadIncrement {
   void restore();
   bool find_forces(ActiveNodes active);
   void set_stiffness();
-  void find_jumps();
-  void add_stress(std::vector<Sym3>& of_cell) const;
+  std::vector<Vec<D>> displacements();
   void find_jump_forces();
   void set_constraints();
   void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
@@ -69,18 +68,11 @@ class LoadIncrement {
   Unknowns<D> unknowns_;
   ElasticStiffness<D> elastic_;
   std::vector<typename ElasticStiffness<D>::OfNode> stiffness_;  ///< of each node with unknowns, s above
-  GradientJumps<D> jumps_;
+  JumpForces<D> jumps_;
   Real force_ = 1;  ///< unit of residuals [N]
   // Of each node with unknowns.
   std::vector<Mat<D>> free_;               ///< changes of displacement that its conditions leave free
   std::vector<Vec<D>> reaction_, weight_;  ///< in the last trial [N]
-  // By node.
-  std::vector<Vec<D>> u_, jump_force_;  ///< displacements of the last trial [m], and the forces of their jumps [N]
-  // By cell, of its particles on this rank: sums of volume times shear modulus and, at the beginning, times stress [N m]; and which share of
-  // their shear stiffness is left in the last trial.
-  std::vector<Real> shear_, left_;
-  std::vector<Sym3> stress_;
-  HaloExchange cells_;
   std::int64_t evaluations_ = 0;
 };
 

@@ -10,11 +10,11 @@ namespace talus {
 template <int D>
 Vec<D> LoadIncrement<D>::left_over(std::span<const Real> f, std::size_t k) const
 {
-  return -force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) - free_[k] * jump_force_[to_size(unknowns_.node[k])];
+  return -force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) - free_[k] * jumps_.at(unknowns_.node[k]);
 }
 
-/// Half of the work of loads and gravity at the displacements, with forces as they are before these.  What is out of balance before and
-/// behind an increment does work that nothing takes up; it counts as damping.
+/// Half of the work of loads, gravity and boundaries at the displacements, with forces as they are before these.  What is out of balance before
+/// and behind an increment does work that nothing takes up; it counts as damping, also where friction took it up before.
 template <int D>
 void LoadIncrement<D>::record_work(std::span<const Real> x)
 {
@@ -27,8 +27,10 @@ void LoadIncrement<D>::record_work(std::span<const Real> x)
     NodeWork<D> of_node;
     const Vec<D> weight = nodes().sum[n].mass * gravity, u = displacement(x, k);
     of_node.gravity = weight.dot(u) / 2;
-    of_node.damping = -(free_[k] * (nodes().sum[n].force + weight)).dot(u) / 2;
+    const Vec<D> out_of_balance = nodes().sum[n].force + weight, free = free_[k] * out_of_balance;
+    of_node.damping = -free.dot(u) / 2;
     m_.work.sums.nodes.add(of_node);
+    m_.work.sums.at_nodes.add({.moved = (free - out_of_balance).dot(u) / 2});
     if (!m_.problem.loads.on_surfaces.empty())
       m_.work.sums.work_on_mesh.add(surface_work(nodes(), unknowns_.node[k]));
   }
@@ -73,8 +75,12 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
   std::vector<Real> f(x.size());
   force_ = 1;
   find_residual(x, f);
+  const std::vector<Mat<D>> free_before = free_;
+  set_constraints();
   StepSums<D>& sums = m_.work.sums;
-  const ExactSums<BoundaryWork> at_nodes = sums.at_nodes;
+  BoundaryWork of_boundaries = sums.at_nodes.value();
+  for (Real BoundaryWork::*const part : {&BoundaryWork::friction, &BoundaryWork::moved, &BoundaryWork::arrival})
+    of_boundaries.*part /= 2;  // the other half is that of the reactions before
   const ExactSums<ForceAndMoment<D>> on_mesh = sums.on_mesh;
   const BoundaryConditions<D> boundary = m_.state.boundary;
   const Real end = time_ + dt_;
@@ -88,7 +94,7 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
     NodeWork<D> of_node;
     of_node.gravity = sum.mass * gravity.dot(displacement(x, k)) / 2;
     of_node.damping = -left_over(f, k).dot(displacement(x, k)) / 2;
-    const Vec<D> held = force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) + jump_force_[to_size(unknowns_.node[k])];
+    const Vec<D> held = force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) + jumps_.at(unknowns_.node[k]);
     of_node.damped = ForceAndMoment<D>::at(m_.problem.mesh.node(unknowns_.node[k]), dt_ * held);
     of_node.mass = sum.mass;
     of_node.first_moment = sum.mass * m_.problem.mesh.node(unknowns_.node[k]);
@@ -102,10 +108,12 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
     for (const Index n : unknowns_.node)
       work_on_mesh.add(surface_work(nodes(), n));
 
+  free_ = free_before;  // the work of the forces before
   move(x, Then::stay);
   record_particle_loads();
   m_.state.boundary = boundary;
-  sums.at_nodes = at_nodes, sums.on_mesh = on_mesh;
+  sums.at_nodes.add(of_boundaries);
+  sums.on_mesh = on_mesh;
   sums.nodes.add(at_end), sums.work_on_mesh.add(work_on_mesh), sums.balance = balance;
   nodes().gravity = gravity, nodes().kick = dt_;
   record_particle_sums(m_);

@@ -1,5 +1,5 @@
 #pragma once
-// Plastic strain averaged over a length of the material, after which strength softens: see materials/softening_length.hpp.
+// Plastic strain averaged over a length of the material, after which strength softens: see materials/parts/softening_length.hpp.
 #include "core/types.hpp"
 #include "materials/interface/material.hpp"
 #include "solver/stress/node_patch_sums.hpp"

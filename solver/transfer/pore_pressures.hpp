@@ -25,7 +25,7 @@ StripColumn<Real> find_pore_pressures(const Model<D>& m, Index body, const Strip
       Real& after = scratch.pore_after[i];
       const Vec<D> x = moves ? columns.before.of(i) : columns.x.of(i);
       const Real at_rest = water->pressure(mesh, cell, x);
-      if (flows)
+      if (columns.water)  // an output of bodies through which no water flows, too
         columns.water_at_rest.set(i, at_rest);
       if (known) {
         const Real p = m.work.flow->at(mesh, cell, x);
@@ -35,7 +35,7 @@ StripColumn<Real> find_pore_pressures(const Model<D>& m, Index body, const Strip
         after = columns.pore.of(i);
       } else {
         after = m.problem.flow.stress_of(body, at_rest);
-        if (flows)
+        if (columns.water)
           columns.water.set(i, at_rest), columns.water_gradient.set(i, water->gradient(mesh, cell, x));
       }
     }

@@ -89,6 +89,11 @@ inline std::vector<SceneCase> scenes_of_all()
   law("neo_hookean_viscous", "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3, bulk_viscosity: {}");
   law("drucker_prager_softening", soil_law);
   law("drucker_prager_softening_length", soil_law + ", softening_length: 0.3");
+  law("mohr_coulomb_varied",
+      "law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, variation: [{parameter: "
+      "cohesion, "
+      "coefficient_of_variation: 0.5, correlation_length: [0.5, 0.2]}, {parameter: youngs_modulus, coefficient_of_variation: 0.2, "
+      "correlation_length: [0.4], correlated_with: cohesion, correlation: 0.5, trend: \"1 + 0.1 * y\"}]");
   law("mohr_coulomb_softening",
       "law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, dilation_angle: 8, "
       "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");

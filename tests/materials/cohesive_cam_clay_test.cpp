@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "materials/radial_return.hpp"
+#include "materials/parts/radial_return.hpp"
 #include "tests/materials/samples.hpp"
 
 namespace talus::cohesive_cam_clay_test {

@@ -1,5 +1,5 @@
 // Elastic constants in any pair: conversions, and what is said of pairs that make no solid.
-#include "materials/elasticity.hpp"
+#include "materials/parts/elasticity.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

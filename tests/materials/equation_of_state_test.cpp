@@ -1,5 +1,5 @@
 // The Mie-Grueneisen curve alone, and in the law that uses it.
-#include "materials/equation_of_state.hpp"
+#include "materials/parts/equation_of_state.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "materials/interface/constitutive_law_of.hpp"
-#include "materials/strength.hpp"
+#include "materials/parts/strength.hpp"
 #include "tests/materials/samples.hpp"
 
 namespace talus::law_contract_test {

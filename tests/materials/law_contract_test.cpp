@@ -141,8 +141,11 @@ TYPED_TEST(LawContract, DiffusivityBoundsTheViscosityOfEveryWaveAndIsReachedAtRe
   }
 }
 
+/// Where flow bears more than the yield surface, steps are so long that nothing of it is left.
 TYPED_TEST(LawContract, EndsInsideTheYieldSurfaceAndDissipates)
 {
+  constexpr Real duration = requires { TypeParam::overstress; }
+  ? 1e30 : 1e-3;
   if constexpr (requires(const TypeParam law, typename TypeParam::State state) { law.yield(Mat3{}, state); }) {
     Dice dice(6);
     Real dissipated = 0;
@@ -150,7 +153,7 @@ TYPED_TEST(LawContract, EndsInsideTheYieldSurfaceAndDissipates)
       auto point = this->point();
       for (const Mat3& f : random_steps(dice)) {
         const Real before = point.state.plastic_work;
-        point.step(f);
+        point.step(f, false, duration);
         ASSERT_LE(point.law.yield(point.stress, point.state), rounding);
         ASSERT_GE(point.state.plastic_work, before);
         dissipated += point.state.plastic_work - before;

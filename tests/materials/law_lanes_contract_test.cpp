@@ -39,6 +39,8 @@ class LawInLanesContract : public ::testing::Test {
   {
     if constexpr (std::is_base_of_v<JohnsonCookMetal, L>)
       return L{static_cast<const JohnsonCookMetal&>(sample<JohnsonCook>())};
+    else if constexpr (std::is_base_of_v<ThresholdMetal, L>)
+      return L{static_cast<const ThresholdMetal&>(sample<MechanicalThreshold>())};
     else if constexpr (std::is_base_of_v<DruckerPrager, L>)
       return L{sample<DruckerPrager>()};
     else if constexpr (std::is_base_of_v<MohrCoulomb, L>)
@@ -86,6 +88,14 @@ class LawInLanesContract : public ::testing::Test {
     if constexpr (std::is_same_v<L, ModifiedCamClay>) {
       all.push_back(law());  // first yield is near zero pressure, on the dry side it opens
       all.back().preconsolidation_pressure = 1e3;
+    }
+    if constexpr (std::is_same_v<L, ElasticHerschelBulkley>) {
+      for (const Real flow_index : {0.5, 1.0, 1.7, 2.0}) {
+        all.push_back(law());
+        all.back().flow_index = flow_index;
+      }
+      all.push_back(law());
+      all.back().consistency = 0;
     }
     return all;
   }

@@ -1,4 +1,4 @@
-#include "materials/logarithm.hpp"
+#include "materials/parts/logarithm.hpp"
 
 #include <gtest/gtest.h>
 

@@ -44,6 +44,35 @@ inline JohnsonCook steel()
 inline constexpr JohnsonCookDamage steel_damage{.d1 = 0.05, .d2 = 3.44, .d3 = -2.12, .d4 = 0.002, .d5 = 0.61};
 inline constexpr MieGruneisen steel_shock{.c0 = 3574, .s = 1.92, .gamma = 1.69};
 
+/// Annealed copper and its threshold (Follansbee & Kocks 1988, Acta Metall. 36, 81), in the form with the root of the rate in which codes
+/// for impact use it (Maudlin, Davidson & Henninger 1990, LA-11895-MS; the material files of Uintah).
+inline MechanicalThreshold annealed_copper()
+{
+  MechanicalThreshold law;
+  law.density = 8960;
+  law.bulk_modulus = 129e9;
+  law.shear_modulus = 46e9;
+  law.athermal_stress = 40e6;
+  law.shear_at_zero_kelvin = 45.78e9;
+  law.shear_loss = 3.0e9;
+  law.shear_temperature = 180;
+  law.boltzmann_over_burgers_cubed = 0.823e6;
+  law.activation_energy = 1.6;
+  law.activation_rate = 1e7;
+  law.activation_p = 2.0 / 3;
+  law.activation_q = 1;
+  law.hardening_modulus = 2390e6;
+  law.hardening_by_log_rate = 12e6;
+  law.hardening_by_root_rate = 1.696e6;
+  law.hardening_shape = 2;
+  law.saturation_stress = 770e6;
+  law.saturation_energy = 0.2625;
+  law.saturation_rate = 1e7;
+  law.specific_heat = 383;
+  law.initial_temperature = 298;
+  return law;
+}
+
 /// So stiff that elastic strain is 1e-6 of what it is: plastic strain is then the strain.
 template <class L>
 L stiffened(L law)

@@ -1,7 +1,7 @@
 // Powers found by series near a known one, against those of the standard library.
 #include <gtest/gtest.h>
 
-#include "materials/power_near.hpp"
+#include "materials/parts/power_near.hpp"
 
 namespace talus::power_near_test {
 namespace {

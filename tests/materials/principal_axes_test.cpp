@@ -1,9 +1,9 @@
 // Principal values and axes in lanes, against those of Eigen and against what they are by construction.
-#include "materials/principal_axes.hpp"
+#include "materials/parts/principal_axes.hpp"
 
 #include <gtest/gtest.h>
 
-#include "materials/logarithm.hpp"
+#include "materials/parts/logarithm.hpp"
 #include "tests/materials/samples.hpp"
 
 namespace talus::principal_axes_test {

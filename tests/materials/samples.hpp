@@ -40,6 +40,7 @@ inline void add_options(Viscoelastic& law)
   law.second = PronyTerm{.share = 0.2, .time = 0.1};
   law.third = PronyTerm{.share = 0.1, .time = 2};
 }
+inline void add_options(ElasticHerschelBulkley& law) { law.yield_stress = 2e4; }  // strains of a per cent come near it
 inline void add_options(Snow& law) { law.hardening_limit = 20; }
 inline void add_options(Newtonian& law) { law.volume_viscosity = 2; }
 inline void add_options(VonMises& law)  // without `rate`: yield() is that of slow loading
@@ -52,6 +53,23 @@ inline void add_options(JohnsonCook& law)
   law.reference_rate = 1e6;  // slower than it: yield() is that of slow loading
   law.damage = JohnsonCookDamage{.d1 = 0.54, .d2 = 4.89, .d3 = -3.03, .d4 = 0.014, .d5 = 1.12};
   law.mie_gruneisen = MieGruneisen{.c0 = 64, .s = 0.9, .gamma = 1.6};  // 2 s - gamma / 2 = 1: smooth between compression and tension
+}
+inline void add_options(MechanicalThreshold& law)
+{
+  law.intrinsic =
+      IntrinsicBarrier{.threshold = 2e4, .activation_energy = 1.2, .activation_rate = 1e13, .activation_p = 0.5, .activation_q = 1.5};
+  law.hardening_by_log_rate = 1e3;
+  law.hardening_by_root_rate = 1e2;
+  law.hardening_by_temperature = 20;
+  law.initial_threshold = 1e4;
+  law.mie_gruneisen = MieGruneisen{.c0 = 64, .s = 0.9, .gamma = 1.6};  // as for Johnson & Cook
+}
+inline void add_options(PorousDuctile& law)
+{
+  law.hardening_coefficient = 1e4;
+  law.hardening_exponent = 0.3;
+  law.nucleation = VoidNucleation{.porosity = 0.04, .mean_strain = 0.3, .deviation = 0.1};
+  law.coalescence = VoidCoalescence{.porosity = 0.15, .failure_porosity = 0.25};
 }
 
 /// Parameters under which a law shows all it has.

@@ -1,4 +1,4 @@
-#include "materials/scalar_root.hpp"
+#include "materials/parts/scalar_root.hpp"
 
 #include <gtest/gtest.h>
 

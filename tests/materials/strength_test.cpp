@@ -1,5 +1,5 @@
 // Divided strength against Mohr's circle: on every plane c + s tan(phi) must fall to its F-th part, whatever cone stands for the planes.
-#include "materials/strength.hpp"
+#include "materials/parts/strength.hpp"
 
 #include <gtest/gtest.h>
 

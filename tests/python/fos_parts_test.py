@@ -59,6 +59,23 @@ class Verdicts(InAFolder):
         self.assertEqual(judge(motion(math.nan, 1), Criterion()), FAILS)
         self.assertIsNone(motion_of(self.history(lambda t: t, lambda t: t), ["crest"], BANK))
 
+    def test_a_slide_that_has_come_to_rest_has_failed(self):
+        slid = motion_of(self.history(lambda t: min(2 * t, 1.5), lambda t: 100 if t < 1 else 0), ["moved"], BANK)
+        self.assertEqual((slid.growth, slid.far), (0, True), "by more than a tenth of the height")
+        self.assertEqual(judge(slid, Criterion()), FAILS)
+        soft = AtRest(gravity=10, height=10, wave_speed=25)
+        self.assertEqual(judge(motion_of(Table("history.csv"), ["moved"], soft), Criterion()), HOLDS, "it settles by 1.6 m")
+
+    def test_ground_of_which_a_part_has_left_has_failed(self):
+        self.history(lambda t: min(t, 1), lambda t: 100 if t < 1 else 0)
+        text = Path("history.csv").read_text(encoding="utf-8").splitlines()
+        left = [line.replace(",1000,", ",980,") if float(line.split(",")[0]) > 3 else line for line in text[1:]]
+        Path("history.csv").write_text("\n".join([text[0], *left]) + "\n", encoding="utf-8")
+        motion_with_loss = motion_of(Table("history.csv"), ["moved"], BANK)
+        self.assertAlmostEqual(motion_with_loss.lost, 0.02, 12)
+        self.assertEqual(judge(motion_with_loss, Criterion()), FAILS)
+        self.assertEqual(judge(motion_with_loss, Criterion(lost=0.03)), HOLDS)
+
     def test_equilibria_fail_where_they_move_on_steadily(self):
         slides = motion_of(self.history(lambda t: 0.5 * t, lambda t: 0), ["moved"], BANK)
         self.assertIsNone(slides.liveliness)

@@ -142,6 +142,26 @@ class OfABank(InAFolder):
         self.assertRegex(self.fos()[2], r"(?s)bank.yaml:4:\d+: error: .*density.*bank.yaml:4:\d+: error: .*poisson_ratio")
         self.assertFalse(Path("out").exists())
 
+    def test_loads_that_change_at_rest_are_refused_as_time_begins_anew_in_trials(self):
+        grows = bank(AT_REST).replace("[0, -9.81]}]", "[0, -9.81], table: [[0, 0], [5, 1]]}]")
+        self.write("bank.yaml", grows)
+        code, _, complaint = self.fos()
+        self.assertEqual(code, 2)
+        self.assertIn("loads[0].table: time begins anew in the trials", complaint)
+        self.assertFalse(Path("out").exists())
+
+    def test_another_mesh_of_the_same_name_begins_the_search_anew(self):
+        scene = bank(AT_REST).replace("mesh: {grid: {low: [0, 0], high: [3, 1.25], cells: [12, 5]}}", "mesh: {file: bank.msh}")
+        words = ("--from", "1", "--to", "4", "--width", "3", "--jobs", "2", "--duration", "0.2")
+        for cells in ("[12, 5]", "[12, 6]"):
+            self.write("grid.yaml", bank(AT_REST).replace("[12, 5]", cells))
+            subprocess.run([self.program, "mesh", "grid.yaml", "--out", "bank.msh"], check=True, capture_output=True)
+            self.write("bank.yaml", scene)
+            code, out, complaint = self.fos(*words)
+            self.assertIn(code, (0, 1), complaint)
+            self.assertIn("at rest: begins", out)
+        self.assertIn("done before", self.fos(*words)[1])
+
     def test_trials_keep_what_a_body_is_and_not_how_it_is_filled(self):
         """All that a body can say of how it is filled, a water table that moves before the state at rest, a wall for one stage only."""
         scene = bank("water: {table: {elevation: 0.2}}\nstages: [{type: geostatic, duration: 20, residual: 1.0e-2, name: first, "

@@ -115,6 +115,14 @@ class Runs(InAFolder):
         checkpoint, = talus.run(SCENE, out="c", until=3).folder.glob("checkpoints/*.h5")
         self.assertEqual(talus.resume(checkpoint, out="d").folder, Path("d"))
 
+    def test_words_of_a_launcher_stand_before_the_program(self):
+        launcher = "sh -c 'echo $2 $# >> started; exec \"$@\"' launcher"
+        talus.run(SCENE, out="a", until=3, launcher=launcher)
+        self.assertEqual(talus.resume("a", launcher=launcher).status, "done")
+        self.assertEqual([line.split()[0] for line in Path("started").read_text(encoding="utf-8").splitlines()], ["run", "run"])
+        with self.assertRaises(FileNotFoundError):
+            talus.run(SCENE, out="b", launcher="no_such_launcher -n 2")
+
     def test_a_file_of_yours_is_not_replaced_by_a_scene(self):
         Path("a.yaml").write_text("mine: 1\n", encoding="utf-8")
         with self.assertRaisesRegex(FileExistsError, "a.yaml was not written by this package"):

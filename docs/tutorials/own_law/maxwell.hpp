@@ -2,9 +2,9 @@
 // Viscoelastic solid: the shear stress relaxes, the pressure does not.
 #include <string_view>
 
-#include "materials/elasticity.hpp"
-#include "materials/law.hpp"
-#include "materials/logarithm.hpp"
+#include "materials/parts/elasticity.hpp"
+#include "materials/parts/law.hpp"
+#include "materials/parts/logarithm.hpp"
 
 namespace talus {
 

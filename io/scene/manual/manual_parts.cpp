@@ -211,7 +211,6 @@ class Manual {
       case Kind::boolean: return "true or false";
       case Kind::text: return fmt::format("text{}", s);
       case Kind::word: return fmt::format("word{}", s);
-      case Kind::node: return fmt::format("value{}", s);
       case Kind::named: return "mapping of numbers";
       case Kind::table: return fmt::format("list{} of [time, value]", s);
       case Kind::list: return fmt::format("list{} of {}", s, type_text(*type.entry, path, true));

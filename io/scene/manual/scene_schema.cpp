@@ -78,7 +78,6 @@ Json schema_of(const ValueType& type, const Range& range)
     case Kind::table: return schema_of(value_type<std::vector<std::array<Real, 2>>>(), range);
     case Kind::optional: return schema_of(*type.entry, range);
     case Kind::choice: return one_of(empty_mapping(), "type", "what it is: decides the other keys", type.structs);
-    case Kind::node: return Json::object();
     case Kind::named: return {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
     case Kind::list: {
       Json schema{{"type", "array"}, {"minItems", 1}, {"items", schema_of(*type.entry, range)}};
@@ -164,7 +163,10 @@ void add_keys(const StructType& type, Json& schema)
     const bool is_mapping = field.type->kind == Kind::mapping;
     if (field.is_alternative)
       schema = one_of(schema, std::string(field.key), field.meaning, field.type->structs);
-    else
+    else {
+      Json of_key = schema_of(*field.type, field.range);
+      if (field.may_be_empty())
+        of_key.erase("minItems");
       insert({.name = field.key,
               .meaning = field.meaning,
               .unit = field.unit,
@@ -173,8 +175,9 @@ void add_keys(const StructType& type, Json& schema)
               .is_mapping = is_mapping,
               .fallback = is_mapping ? "" : default_text(*field.type, fallback, field.range),
               .inserted = inserted_default(*field.type, fallback, field.range),
-              .schema = schema_of(*field.type, field.range)},
+              .schema = std::move(of_key)},
              schema);
+    }
   }
 }
 

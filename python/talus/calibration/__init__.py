@@ -34,15 +34,16 @@ def default_folder(specification: Path) -> Path:
 
 def calibrate(specification: str | os.PathLike[str], *, out: str | os.PathLike[str] | None = None, jobs: int = 1,
               threads: int | None = None, tell: Callable[[str], object] | None = None, pictures: bool = True,
-              program: str | os.PathLike[str] | None = None) -> Calibration:
+              launcher: str | None = None, program: str | os.PathLike[str] | None = None) -> Calibration:
     """Finds parameters of a scene from observations, with their uncertainty.
 
     specification  path of the file (.yaml) that names scene, parameters and observations (docs/guide/calibration.md)
     out            folder for runs and results; default `default_folder`.  Runs that are done there are not repeated
     jobs           runs at a time
-    threads        of each run; default what the program takes, with several runs at a time the cores over these
+    threads        of each run; default what the program takes, with several runs at a time and no launcher the cores over these
     tell           is called with a line of text for each run
     pictures       whether calibration.png is drawn, which needs matplotlib
+    launcher       words before the program, such as "mpirun -n 4"
     program        the program talus; default: `find_program`
 
     Needs scipy and PyYAML, for outlines contourpy.  Raises SceneError for wrong input, with the place of each error; RunFailed if the run
@@ -54,8 +55,8 @@ def calibrate(specification: str | os.PathLike[str], *, out: str | os.PathLike[s
     folder = Path(out) if out is not None else default_folder(Path(specification))
     folder.mkdir(parents=True, exist_ok=True)
     with only_writer(folder):
-        of_each = threads if threads is not None or jobs == 1 else max((os.cpu_count() or 1) // jobs, 1)
-        evaluation = Evaluation(spec, folder, jobs, of_each, found_program, tell or (lambda _: None))
+        of_each = threads if threads is not None or launcher or jobs == 1 else max((os.cpu_count() or 1) // jobs, 1)
+        evaluation = Evaluation(spec, folder, jobs, of_each, found_program, tell or (lambda _: None), launcher)
         try:
             result = (_by_ensemble if spec.search.method == "ensemble" else _by_gauss_newton)(spec, evaluation)
         except NoResiduals as error:

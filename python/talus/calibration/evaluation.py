@@ -69,10 +69,13 @@ class Evaluation:
     jobs     runs at a time
     threads  of each run; None: chosen by the program
     tell     is called with a line for each run
+    launcher words before the program, such as "mpirun -n 4"
     """
 
-    def __init__(self, spec: Specification, out: Path, jobs: int, threads: int | None, program: Path, tell: Tell) -> None:
-        self.spec, self.out, self.jobs, self.threads, self.program, self.tell = spec, out, jobs, threads, program, tell
+    def __init__(self, spec: Specification, out: Path, jobs: int, threads: int | None, program: Path, tell: Tell,
+                 launcher: str | None = None) -> None:
+        self.spec, self.out, self.jobs, self.tell = spec, out, jobs, tell
+        self._how: dict[str, Any] = {"threads": threads, "launcher": launcher, "program": program}
         self.records: list[Record] = []
         self._by_folder: dict[Path, Record] = {}
         self._inputs = inputs_digest(spec.scene, spec.changes)
@@ -165,12 +168,12 @@ class Evaluation:
         was_interrupted = summary.get("status") == "stopped" or summary.get("message") == BEFORE_THE_END
         if was_interrupted and any((record.folder / "checkpoints").glob("step_*.h5")):
             try:
-                return self._check_ended(resume(record.folder, threads=self.threads, progress=self._look, program=self.program))
+                return self._check_ended(resume(record.folder, progress=self._look, **self._how))
             except SceneError:
                 pass  # a checkpoint of another version of the program
         record.folder.parent.mkdir(parents=True, exist_ok=True)
-        return self._check_ended(run(self.spec.scene, set=self._changes(record.values), out=record.folder, threads=self.threads, force=True,
-                                     progress=self._look, program=self.program))
+        return self._check_ended(run(self.spec.scene, set=self._changes(record.values), out=record.folder, force=True, progress=self._look,
+                                     **self._how))
 
     def _check_ended(self, ended: Run) -> None:
         if ended.status != "done":

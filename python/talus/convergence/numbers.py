@@ -17,7 +17,9 @@ from .levels import Level, Plan
 from .richardson import (CONSTANT, FORMAL_ORDER, HIGHEST_ORDER, LOWEST_ORDER, MEANING, SAFETY_FACTOR, STAYS, Extrapolation, extrapolate)
 
 _RELATIVE_ROUNDING = 1e-9
-_NO_RESULTS = ("time", "step", "dt", "stage", "residual")  # columns of a history that describe the steps and not the bodies
+# Columns of a history that describe steps and solvers, and not the bodies.
+_NO_RESULTS = ("time", "step", "dt", "stage", "residual", "newton_iterations", "linear_iterations", "solve_residual", "increment_cuts",
+               "pressure_iterations", "pressure_residual")
 # Numbers of a summary that are results; a point at the end: all below that key.  Those of the energy are columns of the history as well.
 _RESULTS_OF_SUMMARY = ("simulated_time", "watch.fastest", "balances.mass.removed", "runout.")
 _ENERGY_TERMS = "balances.energy.terms."

@@ -52,6 +52,7 @@ class Plan:
     before    the bodies before the division
     kind      RUN or STATIC
     duration  of a trial [s]; of a static one the number of its increments
+    mesh_digest  of the present mesh; empty for quick runs, whose mesh is another
     """
 
     scene: Path
@@ -71,12 +72,13 @@ class Plan:
     duration: float
     stage: dict[str, Any]
     program: Path
+    mesh_digest: str
 
     def trial(self, factor: float, times_as_long: int) -> PlannedRun:
         """The run for a factor, with its duration multiplied.  Raises SceneError."""
         changes = (*self.of_state, *self._changes(factor, self.duration * times_as_long))
         return PlannedRun(self.scene, changes, self.folder / f"trial_{number_text(factor)}", digest_of(self.scene, changes, self.program),
-                          quick=self.at_rest.quick)
+                          self.mesh_digest, quick=self.at_rest.quick)
 
     def _changes(self, factor: float, duration: float) -> list[str]:
         weaken = [{"body": name, "factor": factor * divided} for name, divided in self.bodies.items()]
@@ -124,6 +126,10 @@ def plan_search(scene: Path, changes: Sequence[str], folder: Path, options: Opti
                     min(body["wave_speed [m/s]"] for body in chosen))
     kind, criterion, duration, stage = _trials(options, stages[last]["type"], before)
     at_rest = _until(facts, last) + ["outputs.checkpoint.at_end=true"]
+    if kind == RUN and _flow_of(facts["keys"]):
+        stage["hold_pore_pressure"] = True
+    _refuse_changing_loads(facts, last, scene)
+    mesh = "" if options.quick else facts["mesh"]["digest"]
     names = [body["name"] for body in chosen]
     columns = tuple(f"moved_{name}" for name in options.bodies) or ("moved",)
     moved = [{"name": f"moved_{name}", "body": name, "mass_share": options.share} for name in options.bodies]
@@ -132,14 +138,14 @@ def plan_search(scene: Path, changes: Sequence[str], folder: Path, options: Opti
     keeps_strain = any("plastic_strain" in body["stages"][last]["variables"] for body in chosen)
     divided = {name: body["stages"][last]["strength_divided_by"] for name, body in there.items()}
     plan = Plan(scene, folder, facts["title"],
-                PlannedRun(scene, (*changes, *at_rest), folder / "at_rest", digest_of(scene, [*changes, *at_rest], program),
+                PlannedRun(scene, (*changes, *at_rest), folder / "at_rest", digest_of(scene, [*changes, *at_rest], program), mesh,
                            quick=options.quick),
                 {name: divided[name] for name in names},
                 {name: factor for name, factor in divided.items()
                  if factor != 1 and name not in names and there[name]["stages"][last]["has_strength"]},
                 (*changes, *_from_state(facts, last, there), "initial=" + flow({"from": state})), columns,
                 moved or [{"name": "moved", "mass_share": options.share}], picture if isinstance(picture, Mapping) else None,
-                "plastic_strain" if keeps_strain else "displacement", before, kind, criterion, duration, stage, program)
+                "plastic_strain" if keeps_strain else "displacement", before, kind, criterion, duration, stage, program, mesh)
     plan.trial(1.0, 1)  # errors of a trial are reported before the equilibrium is computed
     return plan
 
@@ -168,7 +174,7 @@ def _trials(options: Options, type_of_rest: str, before: AtRest) -> tuple[str, C
     kind = options.trials or (STATIC if type_of_rest == STATIC else RUN)
     default = Criterion()
     criterion = Criterion(options.growth, options.kinetic if options.kinetic is not None else default.liveliness,
-                          options.steadiness if options.steadiness is not None else default.steadiness)
+                          options.steadiness if options.steadiness is not None else default.steadiness, max(1 - options.share, 1e-6))
     if kind == STATIC:
         if any(given is not None for given in (options.duration, options.damping, options.kinetic)):
             raise SceneError("--duration, --damping and --kinetic belong to trials that are runs (--trials run); static trials have "
@@ -213,13 +219,45 @@ def _from_state(facts: Mapping[str, Any], last: int, there: Mapping[str, Any]) -
               for one, body in zip(keys["bodies"], facts["bodies"]) if body["name"] in there]
     changes.append(f"bodies={flow(bodies)}")
     walls = keys.get("boundaries") or []
-    if any(wall.get("during") for wall in walls):
-        name = facts["stages"][last]["name"]
-        acting = [{key: value for key, value in wall.items() if key != "during"} for wall in walls
-                  if not wall.get("during") or name in map(str, wall["during"])]
+    acting = [_still({key: value for key, value in wall.items() if key != "during"}) for wall in walls if _acts(wall, facts, last)]
+    if acting != walls:
         changes.append(f"boundaries={flow(acting)}")
     for stage in reversed(keys["stages"][:last + 1]):
         if stage.get("water"):
             changes.append(f"water.table={flow(stage['water']['table'])}")
             break
     return changes
+
+
+def _acts(wall: Mapping[str, Any], facts: Mapping[str, Any], last: int) -> bool:
+    """Whether a boundary condition acts in the state at rest."""
+    return not wall.get("during") or facts["stages"][last]["name"] in map(str, wall["during"])
+
+
+def _still(wall: Mapping[str, Any]) -> dict[str, Any]:
+    """A boundary condition without the shaking that begins with the first stage with inertia, which a trial may be."""
+    if wall.get("type") == "compliant_base":
+        return {key: value for key, value in wall.items() if key not in ("velocity", "table", "record")}
+    if wall.get("record"):
+        return {key: value for key, value in wall.items() if key != "record"} | {"table": [[0, 0]]}
+    return dict(wall)
+
+
+def _flow_of(keys: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The block `water.flow` of a scene; empty without one."""
+    water = keys.get("water")
+    flow_of_water = water.get("flow") if isinstance(water, Mapping) else None
+    return flow_of_water if isinstance(flow_of_water, Mapping) else {}
+
+
+def _refuse_changing_loads(facts: Mapping[str, Any], last: int, scene: Path) -> None:
+    """Raises SceneError where something that acts in the state at rest changes in time: time begins anew in a trial, which would judge the
+    ground under other loads than those under which it is at rest."""
+    keys = facts["keys"]
+    acting = [(f"loads[{i}]", load) for i, load in enumerate(keys.get("loads") or [])]
+    acting += [(f"boundaries[{i}]", _still(wall)) for i, wall in enumerate(keys.get("boundaries") or []) if _acts(wall, facts, last)]
+    acting += [(f"water.flow.heads[{i}]", head) for i, head in enumerate(_flow_of(keys).get("heads") or [])]
+    changing = [path for path, one in acting if len({float(row[1]) for row in one.get("table") or []}) > 1]
+    text = "time begins anew in the trials of a factor of safety, with the first value of this table: give the value at rest as a constant"
+    if changing:
+        raise located([Message("error", str(scene), 0, 0, f"{path}.table", text, "") for path in changing])

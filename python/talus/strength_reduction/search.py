@@ -13,6 +13,7 @@ from ..tables import Table
 HOLDS, FAILS, UNCLEAR = "holds", "fails", "unclear"
 FARTHEST = 8      # how far the range is extended
 CLEAR_MARGIN = 5  # a growth that is below or above its limit by this factor decides alone
+_FAR = 0.1        # of the height: what has moved farther has failed, also if it has come to rest
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,8 @@ class Motion:
     liveliness: float | None  #: kinetic energy in the last tenth of the time over its peak [-]; None for equilibria, which have none
     steadiness: float | None  #: of equilibria: displacement in the last third over that in the middle third [-]
     duration: float           #: of the trial [s]
+    lost: float = 0.0         #: share of the mass that has left in the trial [-]
+    far: bool = False         #: whether it has moved farther than what stands can: a tenth of the height, or the settlement if that is more
 
 
 def motion_of(history: Table, moved: Sequence[str], bodies: AtRest) -> Motion | None:
@@ -68,7 +71,8 @@ def motion_of(history: Table, moved: Sequence[str], bodies: AtRest) -> Motion | 
     else:
         middle, last = at(2 / 3) - at(1 / 3), end - at(2 / 3)
         steadiness = last / middle if middle > 0 else math.inf if last > 0 else 0.0
-    return Motion(end, growth, liveliness, steadiness, duration)
+    lost = 1 - float(history["mass"][-1] / history["mass"][0])
+    return Motion(end, growth, liveliness, steadiness, duration, lost, end > max(_FAR * bodies.height, bodies.settlement))
 
 
 def _value_at(time: float, times: np.ndarray, values: np.ndarray) -> float:
@@ -87,15 +91,19 @@ class Criterion:
     growth: float = 0.1
     liveliness: float = 5e-4
     steadiness: float = 0.5
+    lost: float = 0.01
 
 
 def judge(motion: Motion, criterion: Criterion) -> str:
     """The verdict on a trial.
 
+    What has moved far has failed even if it lies still at the end, and so has ground of which a part has left.
     A growth that is far below or above its limit decides alone: particles may oscillate, and where hardly anything moves the peak is as
     small.  In between both measures have to agree; if they contradict each other the verdict is unclear.  Equilibria fail if growth and
     steadiness are above their limits: what comes to rest moves less and less.
     """
+    if motion.far or motion.lost > criterion.lost:
+        return FAILS
     if motion.steadiness is not None:
         return HOLDS if motion.growth <= criterion.growth or motion.steadiness <= criterion.steadiness else FAILS
     if motion.growth <= criterion.growth / CLEAR_MARGIN:

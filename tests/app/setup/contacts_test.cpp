@@ -55,6 +55,13 @@ TEST_F(ContactsOfScene, BodiesThatOverlapAtTheStartAreRefused)
   EXPECT_THAT(outcome.err, HasSubstr("blocks.yaml:12:5: error: contacts[0].between: \"high\" overlaps \"low\" at the start"));
 }
 
+TEST_F(ContactsOfScene, BodiesThatOverlapWithoutAContactOfTheirOwnAreRefused)
+{
+  const Outcome outcome = check("  - {between: [low, far]}\n  - {between: [high, far]}\n", "0.25");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[1] \"high\".shape: \"high\" overlaps \"low\" at the start"));
+}
+
 TEST_F(ContactsOfScene, PairsWithoutAContactAreNamed)
 {
   const Outcome outcome = check("  - {between: [low, high], friction: 0.5}\n");
@@ -109,6 +116,19 @@ TEST(ContactsOfBodies, ShareFieldsWhereNothingPutsThemApart)
   EXPECT_EQ(contacts.laws[2].name(), "b_d");
   EXPECT_EQ(contacts.laws[2].friction, 0.3);
   EXPECT_EQ(warnings.size(), 2u);
+}
+
+TEST(ContactsOfBodies, LeaveOutBodiesThatCouldNotBeFilled)
+{
+  Scene scene;
+  ContactSpec slides, sticks;
+  slides.between = {"a", "none"};
+  sticks.between = {"none", "b"}, sticks.tied = true;
+  scene.contacts = {slides, sticks};
+  SceneErrorCollector errors(scene);
+  std::vector<std::string> warnings;
+  EXPECT_TRUE(contacts_of(scene, {{"a", 0, 0, {}}, {"b", 0, 0, {}}}, errors, warnings).laws.empty());
+  EXPECT_TRUE(contacts_of(scene, {}, errors, warnings).laws.empty());
 }
 
 }  // namespace

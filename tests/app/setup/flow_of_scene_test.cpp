@@ -121,5 +121,30 @@ TEST_F(FlowOfScene, TakesUpALoadAtOnceAndKeepsAccountOfItsWater)
   EXPECT_NEAR(last(table, "reaction_y_min_y"), 1e4 + 2000 * 9.81, 0.15 * 3e4);
 }
 
+/// A load on soil that hardly drains makes a pressure, with which another run goes on; held, it stays in every stage.
+TEST_F(FlowOfScene, PressuresGoOnInAnotherRun)
+{
+  write_scene("permeability: 1.0e-6", "drained: [y_max]");
+  ASSERT_EQ(talus("run layer.yaml --quiet --out out --set outputs.checkpoint.at_end=true").code, 0);
+  const auto last_frame = [&](const std::string& run) {
+    auto frame = folder_ / run / "particles_0000.vtp";
+    for (int n = 1; std::filesystem::exists(folder_ / run / fmt::format("particles_{:04}.vtp", n)); ++n)
+      frame = folder_ / run / fmt::format("particles_{:04}.vtp", n);
+    return frame;
+  };
+  const auto sorted = [](std::vector<Real> values) {
+    std::ranges::sort(values);
+    return values;
+  };
+  const auto before = sorted(field_of(last_frame("out"), "pore_pressure"));
+  ASSERT_FALSE(before.empty());
+  ASSERT_GT(before.back(), 8e3);
+  const std::string goes_on = " --quiet --set initial.from=out --set 'bodies=[{name: layer, material: soil}]' --set 'stages=[";
+  ASSERT_EQ(talus("run layer.yaml --out held" + goes_on + "{type: run, duration: 0.01, hold_pore_pressure: true}]'").code, 0);
+  EXPECT_THAT(sorted(field_of(last_frame("held"), "pore_pressure")), testing::ContainerEq(before));
+  ASSERT_EQ(talus("run layer.yaml --out flows" + goes_on + "{type: run, duration: 1.0e-4}]'").code, 0);
+  EXPECT_NEAR(sorted(field_of(last_frame("flows"), "pore_pressure")).back(), before.back(), 0.02 * before.back());
+}
+
 }  // namespace
 }  // namespace talus::flow_of_scene_test

@@ -72,6 +72,8 @@ TEST_F(RigidOfScene, SheetsThatCannotBeAreRefused)
     EXPECT_THAT(outcome.err, HasSubstr(words));
   EXPECT_THAT(check("  - {name: d, sheet: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]], motion: given}\n", true).err,
               HasSubstr("rigid[0] \"d\".sheet: the corners of a sheet have to be those of a flat convex polygon"));
+  EXPECT_THAT(check("  - {name: e, sheet: [[0, 0, 0], [1, 1, 0], [0.3, 0.3, 0]], motion: given}\n", true).err,
+              HasSubstr("scene.yaml:12:5: error: rigid[0] \"e\".sheet: the corners of a sheet lie on a line"));
 }
 
 TEST_F(RigidOfScene, ASheetIsDrawnAndSaysWhatItIs)
@@ -82,6 +84,37 @@ TEST_F(RigidOfScene, ASheetIsDrawnAndSaysWhatItIs)
   ASSERT_EQ(talus("run scene.yaml --out out").code, 0);
   const StoredMesh drawn = read_mesh(folder_ / "out/rigid_0000.vtu");
   EXPECT_EQ(drawn.corners.size(), 2 * 2 * 3u) << "two triangles a segment";
+}
+
+TEST_F(RigidOfScene, SolidsThatFitBetweenThePointsOfASheetAreWarnedOf)
+{
+  const auto stone = [](const std::string& width) {
+    return "  - {name: shelf, sheet: [[0.1, 1.3], [1.9, 1.3]], motion: given}\n"
+           "  - {name: stone, shape: {type: box, low: [1, 1.5], high: [" +
+           width + "]}, mass: 1}\n";
+  };
+  EXPECT_THAT(check(stone("1.05, 1.55")).err, HasSubstr("\"stone\", 0.05 m wide, may pass through the sheet \"shelf\""));
+  EXPECT_THAT(check(stone("1.2, 1.7")).err, testing::Not(HasSubstr("may pass through")));
+}
+
+TEST_F(RigidOfScene, ARestartRefusesAnotherSurface)
+{
+  const auto tetrahedron = [](const std::string& top) {
+    const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
+      return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c + "\nendloop\nendfacet\n";
+    };
+    const std::string o = "0 0 0", x = "0.5 0 0", y = "0 0.5 0";
+    return "solid s\n" + facet(o, y, x) + facet(o, top, y) + facet(o, x, top) + facet(x, y, top) + "endsolid s\n";
+  };
+  write("stone.stl", tetrahedron("0 0 0.5"));
+  write("scene.yaml", block_and("  - {name: stone, file: stone.stl, at: [0.5, 1.2, 0.5], density: 2000}\n", true));
+  ASSERT_EQ(talus("run scene.yaml --quiet --out out --until 2").code, 4) << read("err.txt");
+  write("stone.stl", tetrahedron("0 0 0.4"));
+  const Outcome refused = talus("run --resume out --quiet");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("the surface of a rigid body is not the one that the checkpoint was made with"));
+  write("stone.stl", tetrahedron("0 0 0.5"));
+  EXPECT_EQ(talus("run --resume out --quiet").code, 0) << read("err.txt");
 }
 
 TEST_F(RigidOfScene, BodiesThatBeginInsideOthersAreRefused)

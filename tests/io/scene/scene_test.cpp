@@ -300,6 +300,12 @@ TEST(Scene, KeepsDefaultsOfWhatIsNotGiven)
   EXPECT_FALSE(s.outputs.particles || s.outputs.mesh || s.outputs.history);
 }
 
+TEST(Scene, TakesAnEmptyListOfWhatNeedNotBeThereAsNone)
+{
+  EXPECT_TRUE(read_scene(folder / "smallest.yaml", std::vector<std::string>{"loads=[]", "stages=[]"}).stages.empty());
+  EXPECT_THROW(read_scene(folder / "smallest.yaml", std::vector<std::string>{"bodies=[]"}), SceneErrors);
+}
+
 TEST(Scene, ReadsWhenItsStateIsKept)
 {
   const CheckpointSpec asked = scene("solid.yaml").outputs.checkpoint, usual = scene("plane.yaml").outputs.checkpoint;
@@ -310,6 +316,27 @@ TEST(Scene, ReadsWhenItsStateIsKept)
   EXPECT_FALSE(usual.every || usual.steps);
   EXPECT_EQ(usual.wall_time, 900);
   EXPECT_EQ(usual.keep, 2);
+}
+
+TEST(Scene, ReadsHowParametersVary)
+{
+  const auto variation = scene("plane.yaml").materials.at(1).variation;
+  ASSERT_EQ(variation.size(), 2U);
+  EXPECT_EQ(variation[0].parameter, "shear_modulus");
+  EXPECT_EQ(variation[0].distribution, Distribution::normal);
+  EXPECT_EQ(variation[0].coefficient_of_variation, 0.1);
+  EXPECT_THAT(variation[0].correlation_length, ElementsAre(40, 4));
+  EXPECT_EQ(variation[0].covariance, Covariance::gaussian);
+  EXPECT_EQ(variation[0].seed, 3);
+  EXPECT_EQ(variation[0].minimum, 1e9);
+  EXPECT_EQ(variation[0].maximum, 3e9);
+  EXPECT_EQ(variation[1].distribution, Distribution::lognormal);
+  EXPECT_EQ(variation[1].covariance, Covariance::exponential);
+  EXPECT_EQ(variation[1].seed, 1);
+  EXPECT_EQ(variation[1].correlated_with, "shear_modulus");
+  EXPECT_EQ(variation[1].correlation, 0.5);
+  EXPECT_EQ(variation[1].trend, "1 + 0.1 * y");
+  EXPECT_FALSE(variation[1].minimum || variation[1].maximum);
 }
 
 TEST(Scene, KnowsWhereEverythingWasAskedFor)

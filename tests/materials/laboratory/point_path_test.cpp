@@ -175,8 +175,8 @@ TEST(PointPath, PathsFollowOneAnother)
   EXPECT_NEAR(table.rows.back().time, 5, 1e-12);
   EXPECT_NEAR(table.rows.back().F(0, 1), 3e-3 * table.rows[5].F(1, 1), 1e-12);
   ASSERT_EQ(table.history_names.size(), table.rows[0].history.size());
-  EXPECT_EQ(table.history_names.front(), "elastic_left_xx");
-  EXPECT_EQ(table.history_names.back(), "opened_volume");
+  EXPECT_EQ(table.history_names.front(), "elastic_left_xx [-]");
+  EXPECT_EQ(table.history_names.back(), "opened_volume [-]");
 }
 
 TEST(PointPath, AStepTooLongToBeSolvedIsCutIntoParts)

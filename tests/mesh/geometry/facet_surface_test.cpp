@@ -131,6 +131,8 @@ TEST(SurfaceOfTriangles, OfASheetKnowsItsRim)
   EXPECT_NEAR(over_diagonal.distance, -0.3, 1e-13);
   EXPECT_TRUE(beyond.on_rim);
   EXPECT_NEAR(beyond.distance, -0.5, 1e-13);
+  EXPECT_LT((beyond.rim_normal - Vec3(0, 0, 1)).norm(), 1e-15);
+  EXPECT_EQ(over_diagonal.rim_normal, (Vec3(Vec3::Zero())));
   EXPECT_TRUE(corner.on_rim);
   EXPECT_GT(corner.distance, 0);
 
@@ -150,6 +152,33 @@ TEST(SurfaceOfSegments, OfASheetKnowsItsRim)
   EXPECT_FALSE(line.distance({2.1, -0.1}).on_rim) << "the corner is within";
   EXPECT_TRUE(line.distance({-0.1, 0.1}).on_rim);
   EXPECT_LT(line.distance({-0.1, 0.1}).distance, 0) << "left of the way is behind";
+}
+
+// Second moments about the origin are 1e12 times those about the centre there.
+TEST(SurfaceOfTriangles, OfASheetFarFromTheOriginHasTheSameInertia)
+{
+  const Vec3 far(1e6, 2e6, -1e6);
+  const std::vector<Vec3> corners{far, far + Vec3(3, 0, 0), far + Vec3(3, 2, 0), far + Vec3(0, 2, 0)};
+  const auto sheet = FacetSurface<3>(corners, {{0, 1, 2}, {0, 2, 3}}).sheet();
+  EXPECT_LT((sheet.centre - far - Vec3(1.5, 1, 0)).norm(), 1e-9);
+  EXPECT_NEAR(sheet.inertia(0, 0), 6 * 4 / 12.0, 1e-8);
+  EXPECT_NEAR(sheet.inertia(1, 1), 6 * 9 / 12.0, 1e-8);
+  EXPECT_NEAR(sheet.inertia(2, 2), 6 * (9 + 4) / 12.0, 1e-8);
+}
+
+TEST(SurfaceOfTriangles, TrianglesWithTwoCornersAtOnePlaceAreLeftOut)
+{
+  std::vector<std::array<Index, 3>> triangles;
+  auto corners = box_corners({3, 2, 1}, triangles);
+  const auto whole = triangles.size();
+  const auto one = triangles.front();
+  triangles.push_back({one[0], one[0], one[1]});
+  corners.push_back(corners[static_cast<std::size_t>(one[2])]);  // another number for the same place
+  triangles.push_back({one[2], one[1], static_cast<Index>(corners.size() - 1)});
+  const FacetSurface<3> surface(corners, triangles);
+  EXPECT_EQ(surface.facets().size(), whole);
+  EXPECT_EQ(surface.fault(), "");
+  EXPECT_NEAR(surface.solid().volume, 6, 1e-13);
 }
 
 TEST(SurfaceOfTriangles, SamplesAreNowhereFartherApartThanAsked)

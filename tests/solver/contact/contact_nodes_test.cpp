@@ -13,7 +13,8 @@ TYPED_TEST_SUITE(ContactIn, ContactKinds);
 /// Two blocks, one above the other with so many empty layers of cells between them; each moves with a velocity of its own.  The upper one is
 /// half as wide as the box, the lower one `half_low` to each side of its middle.
 template <class S>
-Model<S::D> blocks(const Vec<S::D>& v_low, const Vec<S::D>& v_high, const ContactLaw& law, int empty_layers = 0, Real half_low = 0.25)
+Model<S::D> blocks(const Vec<S::D>& v_low, const Vec<S::D>& v_high, const ContactLaw& law, int empty_layers = 0, Real half_low = 0.25,
+                   bool third = false)
 {
   constexpr int D = S::D;
   constexpr Index n = D == 2 ? 12 : 8;
@@ -29,6 +30,14 @@ Model<S::D> blocks(const Vec<S::D>& v_low, const Vec<S::D>& v_high, const Contac
       [&](const Vec<D>&) { return v_high; });
   m.problem.contacts = {.field_of_body = {0, 1}, .n_fields = 2, .laws = {law}};
   m.problem.contacts.laws[0].second = 1;
+  if (third) {  // far from both
+    add_body<D>(
+        m, "speck", rubber(1e4, 0.3, 1000), 4, [&](const Vec<D>& x) { return (x.array() < 0.1).all(); },
+        [&](const Vec<D>&) { return Vec<D>(Vec<D>::Zero()); });
+    m.problem.contacts.field_of_body.push_back(2), m.problem.contacts.n_fields = 3;
+    for (const Index other : {0, 1})
+      m.problem.contacts.laws.push_back({.first = other, .second = 2, .first_body = {}, .second_body = {}});
+  }
   make_ready(m);
   return m;
 }
@@ -86,6 +95,29 @@ TYPED_TEST(ContactIn, UnderTheEdgesOfABlockThePlaneSaysWhichWayTheSurfaceFaces)
   // at most 0.013 is measured; 0.055 to 0.081 with a power of 6 instead of 60, with which blocks plough
   EXPECT_LT(tilted, 0.02 * pressed) << "impulses along the normal hold a block back that slides";
   end_sweeps(m);
+}
+
+// With more fields impulses are exchanged in several sweeps, of which the limits are one.  The third field touches neither.
+TYPED_TEST(ContactIn, CohesionActsOnceInAStepWithThreeFields)
+{
+  constexpr int D = TypeParam::D;
+  constexpr Real friction = 0.2, cohesion = 50, dt = 1e-6;
+  const Vec<D> v_low = along<D>(D - 1, 1) + along<D>(0, 5), v_high = along<D>(D - 1, -1) - along<D>(0, 5);
+  const auto rubbed = [&](bool three) {
+    auto m = blocks<TypeParam>(v_low, v_high, rubbing(friction, cohesion), 0, 0.25, three);
+    make_step(m, dt);
+    Real sum = 0;
+    for (const ContactNode<D>& at : m.work.contact.nodes()) {
+      const Real most = friction * at.pressed.norm() + cohesion * at.area * dt;
+      EXPECT_LE(at.rubbed.norm(), most * (1 + 1e-9));
+      sum += at.rubbed.norm();
+    }
+    end_sweeps(m);
+    return sum;
+  };
+  const Real two = rubbed(false);
+  EXPECT_GT(two, 0);
+  EXPECT_NEAR(rubbed(true), two, 1e-9 * two);
 }
 
 TYPED_TEST(ContactIn, BlocksThatPartDoNotAttractEachOther)

@@ -137,6 +137,102 @@ TEST(RigidBodies, ThatMeetKeepMomentumAndLoseEnergy)
   EXPECT_GT(states[1].v[0], 0.5);
 }
 
+/// A wall over the ground from one place to another; its front is above.
+RigidWall<2> floor_between(Real from, Real to) { return {"floor", FacetSurface<2>({{from, 0}, {to, 0}}, {{1, 0}})}; }
+
+TEST(AWall, EndsAtItsRim)
+{
+  const RigidScene<2> scene{{ball(0.3, 10, 0.5), brick(0.4, 0.4, 10, 0.5)}, {floor_between(-1, 1)}};
+  std::vector<RigidState<2>> states(2);
+  states[0].x = {1.4, -0.2}, states[1].x = {-1.5, -0.3};
+  EXPECT_TRUE(find_contacts<2>(scene, states, 1e-3).empty());
+  run<2>(scene, {0, -10}, 1e-3, 500, states);
+  for (const RigidState<2>& state : states) {
+    EXPECT_NEAR(state.v[1], -10 * 0.4995, 1e-12) << "they fall freely";
+    EXPECT_EQ(state.v[0], 0);
+  }
+}
+
+TEST(ABall, RollsOverTheRimOfAWallAndFalls)
+{
+  const RigidScene<2> scene{{ball(0.3, 10, 0)}, {floor_between(-1, 1)}};
+  std::vector<RigidState<2>> states(1);
+  states[0].x = {0.8, 0.3}, states[0].v = {1, 0};
+  run<2>(scene, {0, -10}, 1e-3, 1000, states);
+  EXPECT_LT(states[0].x[1], -1);
+  EXPECT_GT(states[0].v[0], 0.99) << "the rim pushes it outwards";
+  EXPECT_LT(0.5 * states[0].v.squaredNorm() + 10 * states[0].x[1], 0.5 + 10 * 0.3 + 0.02);
+}
+
+TEST(ABrick, SlidesOffTheEndOfAWall)
+{
+  const RigidScene<2> scene{{brick(1, 0.5, 100, 0)}, {floor_between(-1, 1)}};
+  std::vector<RigidState<2>> states(1);
+  states[0].x = {0.3, 0.25}, states[0].v = {3, 0};
+  run<2>(scene, {0, -10}, 1e-3, 1000, states);
+  EXPECT_GT(states[0].x[0], 2.5);
+  EXPECT_LT(states[0].x[1], -0.5);
+}
+
+TEST(ABrick, SlidesAcrossTheJointOfTwoWalls)
+{
+  const RigidScene<2> scene{{brick(1, 0.5, 100, 0)}, {floor_between(-20, 0), floor_between(0, 20)}};
+  for (const Real speed : {2.0, -2.0, 30.0}) {
+    std::vector<RigidState<2>> states(1);
+    states[0].x = {-speed / 4, 0.25}, states[0].v = {speed, 0};
+    run<2>(scene, {0, -10}, 1e-3, 500, states);
+    EXPECT_NEAR(states[0].v[0], speed, 1e-9 * std::abs(speed));
+    EXPECT_NEAR(states[0].x[1], 0.25, 1e-4);
+  }
+}
+
+// Its corner is just past the rims of both.
+TEST(AWedge, InACornerOfTwoWallsTouchesBoth)
+{
+  RigidBody<2> wedge = brick(1, 1, 100, 0);
+  wedge.shape = std::make_shared<const RigidShape<2>>(FacetSurface<2>({{-0.6, -0.6}, {0.4, 0.2}, {0.2, 0.4}}, {{0, 1}, {1, 2}, {2, 0}}));
+  const RigidScene<2> scene{{wedge}, {floor_between(0, 20), {"left", FacetSurface<2>({{0, 0}, {0, 20}}, {{0, 1}})}}};
+  std::vector<RigidState<2>> states(1);
+  states[0].x = {0.6 - 1e-4, 0.6 - 2e-4};
+  const auto contacts = find_contacts<2>(scene, states, 0);
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_LT((contacts[0].normal - Vec<2>(0, 1)).norm(), 1e-12);
+  EXPECT_LT((contacts[1].normal - Vec<2>(1, 0)).norm(), 1e-12);
+  EXPECT_NEAR(contacts[0].gap, -2e-4, 1e-12);
+  EXPECT_NEAR(contacts[1].gap, -1e-4, 1e-12);
+}
+
+TEST(ABrick, IsMovedOutByAFifthOfItsOverlapInAStep)
+{
+  const RigidScene<2> scene{{brick(1, 0.5, 100, 0.5)}, {ground_2d({0, 1})}};
+  std::vector<RigidState<2>> states(1);
+  states[0].x = {0, 0.24};
+  run<2>(scene, Vec<2>::Zero(), 1e-3, 1, states);
+  EXPECT_NEAR(states[0].x[1], 0.24 + 0.2 * 0.01, 1e-5) << "whatever the number of points";
+}
+
+// The points of the sheet that are looked at are 0.5 apart, the ball is 0.2 wide.
+TEST(ABall, DoesNotPassBetweenTheSamplesOfASheet)
+{
+  RigidBody<2> sheet{.name = "sheet",
+                     .shape = std::make_shared<const RigidShape<2>>(FacetSurface<2>({{-4, 0}, {4, 0}}, {{1, 0}}), FacetsOf::sheet),
+                     .mass = 0,
+                     .friction = 0.3,
+                     .motion = RigidMotion<2>{}};
+  for (const Real side : {1.0, -1.0})
+    for (const std::size_t of_ball : {0u, 1u}) {
+      RigidScene<2> scene{{sheet, sheet}, {}};
+      scene.bodies[of_ball] = ball(0.1, 1, 0.3);
+      std::vector<RigidState<2>> states(2);
+      states[of_ball].x = {0.26, side * 0.5};
+      run<2>(scene, {0, -side * 10}, 1e-3, 1000, states);
+      EXPECT_NEAR(side * states[of_ball].x[1], 0.1, 1e-4);
+      states[of_ball].x = {4.2, side * 0.5}, states[of_ball].v = Vec<2>::Zero();
+      run<2>(scene, {0, -side * 10}, 1e-3, 1000, states);
+      EXPECT_LT(side * states[of_ball].x[1], -1) << "it falls past the end";
+    }
+}
+
 // The intermediate axis theorem: rotation about the middle axis turns over, that about the others stays; energy and momentum are kept.
 TEST(ABodyInSpace, TumblesWithItsAngularMomentum)
 {
