@@ -64,6 +64,7 @@ CASES = [
     "granular_layer",
     "granular_chute",
     "clay_block",
+    "snow_block",
     "softening_band",
     "consolidation",
     "saturated_soil",

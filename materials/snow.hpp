@@ -19,8 +19,10 @@ namespace talus {
 /// and the eigenvalues of V are clamped to [1 - critical_compression, 1 + critical_stretch]: what is beyond goes to F_p.  J_p is stored as
 /// its logarithm.  The law is isotropic, so F_e is needed without its rotation only.
 ///
-/// The limits are a flow rule, but follow from no potential: where one direction reaches its limit while strong loads across it have the
-/// other sign, the stress may do negative work on the plastic strain.  The plastic work counts such steps as zero.
+/// The plastic work is the work of the stress on the plastic strain less the elastic energy that growing moduli store (it comes back where the
+/// snow is unloaded), so that the rest of the work of the stress is the elastic energy.  The limits are a flow rule, but follow from no
+/// potential: where one direction reaches its limit while strong loads across it have the other sign, that may be negative.  Such steps count
+/// as zero.
 struct Snow : Elasticity {
   static constexpr std::string_view name = "snow";
   static constexpr std::string_view summary =
@@ -179,17 +181,20 @@ struct Snow : Elasticity {
     volume = where(flows, kept.sum(), volume);
     strain = where<T>(flows, axes.tensor(kept), strain);
     left = where<T>(flows, talus::expm1(scale_and_shift(2, strain, 0)), left);
+    const T before = factor;
     factor = where(flows, c.factor(plastic_volume), factor);
-    T work = 0;
+    T work = 0, energy = 0.5 * c.lambda * expm1(volume) * expm1(volume);
     for (int i = 0; i < 3; ++i) {
       const T more = expm1(kept[i]);
       work += (2 * c.shear * (1 + more) * more + of_volume(volume, c)) * plastic[i];
+      energy += c.shear * more * more;
     }
+    const T lost = max(T(factor * work - (factor - before) * energy), T(0));
     const T third = plastic.sum() / 3;
     const T sheared = sqrt(T((2.0 / 3) * max(T(plastic.squaredNorm() - 3 * third * third), T(0))));
     put(state, &State::plastic_volume, plastic_volume);
     put(state, &State::plastic_strain, T(get(state, &State::plastic_strain) + where(flows, sheared, T(0))));
-    put(state, &State::plastic_work, T(get(state, &State::plastic_work) + where(flows, max(T(factor * work), T(0)), T(0))));
+    put(state, &State::plastic_work, T(get(state, &State::plastic_work) + where(flows, lost, T(0))));
   }
 
   /// Principal stretches minus one under principal Kirchhoff stresses over the factor of hardening [Pa], by Newton's method for J_e.

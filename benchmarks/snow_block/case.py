@@ -53,13 +53,13 @@ LAWS = {"snow": snow, "firn": firn}
 
 
 def measured(run, pressure):
-    """Of each frame: pressure on the upper side, mean axial and lateral pressure in the block [Pa], volume ratio, spread of the axial one over its mean."""
+    """Of each frame, which are equally far in time: pressure on the upper side, mean axial and lateral pressure in the block [Pa], volume ratio, spread of the axial one over its mean."""
     rows, first = [], run.frames[0]
-    for frame in run.frames[1:]:
+    for number, frame in enumerate(run.frames[1:], 1):
         weight = frame["volume"] / frame["volume"].sum()
         axial, lateral = -weight @ frame["stress"][:, 1], -weight @ frame["stress"][:, 0]
         spread = np.sqrt(weight @ (frame["stress"][:, 1] + axial) ** 2) / axial
-        rows.append([pressure * frame["time"] / tools.reference(CASE)["time [s]"], axial, lateral, frame["volume"].sum() / first["volume"].sum(), spread])
+        rows.append([pressure * number / (len(run.frames) - 1), axial, lateral, frame["volume"].sum() / first["volume"].sum(), spread])
     return np.array(rows).T
 
 

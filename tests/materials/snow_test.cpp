@@ -75,18 +75,21 @@ TEST(Snow, IsotropicCompressionFollowsTheClosedForm)
   EXPECT_EQ(point.state.plastic_strain, 0) << "no change of shape";
 }
 
-TEST(Snow, PlasticWorkOfConfinedCompressionIsTheIntegralOfTheStress)
+TEST(Snow, PlasticWorkOfConfinedPathsIsTheWorkOfTheStressLessTheStoredEnergy)
 {
   constexpr int steps = 20000;
-  constexpr Real end = 0.8;
-  Point<Snow> point{.law = fresh()};
-  confine(point, end, steps);
-  // Integral of h M (1 - s) s over the plastic strain ln J_p, by the midpoint rule.
-  Real work = 0;
-  const Real total = std::log(end / low);
-  for (int n = 0; n < steps; ++n)
-    work -= total / steps * std::exp(xi * (1 - std::exp(total * (n + 0.5) / steps))) * M * (1 - low) * low;
-  EXPECT_NEAR(point.state.plastic_work, work, 1e-4 * work);  // backward Euler: half a step of the growth by exp(xi 0.2)
+  for (const Real end : {0.8, 1.2}) {
+    Point<Snow> point{.law = fresh()};
+    confine(point, end, steps);
+    // Integral of h M (s - 1) s over the plastic strain ln J_p, by the midpoint rule.
+    const Real s = end < 1 ? low : high, total = std::log(end / s);
+    Real work = 0;
+    for (int n = 0; n < steps; ++n)
+      work += total / steps * std::exp(xi * (1 - std::exp(total * (n + 0.5) / steps))) * M * (s - 1) * s;
+    const Real stored = (std::exp(xi * (1 - end / s)) - 1) * M * (s - 1) * (s - 1) / 2;  // by the change of moduli alone
+    EXPECT_GT(std::abs(stored), 0.003 * work);
+    EXPECT_NEAR(point.state.plastic_work, work - stored, 2e-4 * work);  // backward Euler: half a step of the change by exp(xi 0.2)
+  }
 }
 
 TEST(Snow, ShearIsCutOffAtBothLimits)
