@@ -65,8 +65,8 @@ TEST(JohnsonCookFailure, DamageIsPlasticStrainOverFractureStrain)
   const Control none{Controlled::stress, 0};
   const PointPath pull{.steps = 100, .controls = {.xx = Control{Controlled::strain_rate, 0.5}, .yy = none, .zz = none}};
   const auto [names, rows] = drive(make_material(slow_copper(), 0, 1, "bar"), {&pull, 1});
-  ASSERT_EQ(names[6], "plastic_strain");
-  ASSERT_EQ(names.back(), "damage");
+  ASSERT_EQ(names[6], "plastic_strain [-]");
+  ASSERT_EQ(names.back(), "damage [-]");
   EXPECT_NEAR(rows.back().history.back() / (rows.back().history[6] / testing::copper_damage.fracture_strain(1.0 / 3, 1, 0)), 1, 1e-9);
 }
 

@@ -142,8 +142,9 @@ TEST(JohnsonCook, TensionTestReadsTheCauchyStressAtThePlasticRate)
   const Control none{Controlled::stress, 0};
   const PointPath pull{.steps = 400, .time = 1e-4, .controls = {.xx = Control{Controlled::strain_rate, 4000}, .yy = none, .zz = none}};
   const auto [names, rows] = drive(make_material(law, 0, 1, "bar"), {&pull, 1});
-  ASSERT_EQ(names, (std::vector<std::string>{"elastic_left_xx", "elastic_left_yy", "elastic_left_zz", "elastic_left_xy", "elastic_left_yz",
-                                             "elastic_left_xz", "plastic_strain", "plastic_work", "temperature"}));
+  ASSERT_EQ(names, (std::vector<std::string>{"elastic_left_xx [-]", "elastic_left_yy [-]", "elastic_left_zz [-]", "elastic_left_xy [-]",
+                                             "elastic_left_yz [-]", "elastic_left_xz [-]", "plastic_strain [-]", "plastic_work [J/m^3]",
+                                             "temperature [K]"}));
   const Real E = law.moduli().youngs;
   constexpr Real driver = 1e-8;  // relative: it leaves 1e-10 of lateral stress, differences of plastic strain lose two digits
   for (std::size_t n = 1; n < rows.size(); ++n) {
