@@ -106,7 +106,7 @@ struct SmallRun {
     state.boundary.add({.name = "floor", .kind = Fixed<2>{}}, problem.mesh, held);
   }
   void sort() { sort_by_cell(state.particles.cell, state.particles.id, state.bodies, problem.mesh.n_cells(), order); }
-  RunView<2> view() const { return {problem, state, order, fields, "the only", 0, 0}; }
+  RunView<2> view() const { return {problem, state, order, fields, "the only", "run", 0, 0}; }
 };
 
 /// As a run goes on.

@@ -141,7 +141,7 @@ struct RankOfRun {
   {
     state.particles = std::move(cloud.particles), state.bodies = std::move(cloud.bodies), state.materials = std::move(cloud.materials);
   }
-  RunView<2> view() const { return {problem, state, order, fields, "the only", 0, 0}; }
+  RunView<2> view() const { return {problem, state, order, fields, "the only", "run", 0, 0}; }
   /// Ids of rows [begin, end) of the file.
   static std::vector<std::int64_t> ids(std::int64_t begin, std::int64_t end)
   {

@@ -45,7 +45,7 @@ struct Steps {
     });
     state.boundary.add({.name = "floor", .kind = Fixed<2>{}}, problem.mesh, std::vector<Index>{0, 1});
   }
-  RunView<2> in_columns() const { return {problem, state, order, fields, "the only", 0, 0}; }
+  RunView<2> in_columns() const { return {problem, state, order, fields, "the only", "run", 0, 0}; }
   RunView<2> in_strips() const
   {
     RunView<2> view = in_columns();

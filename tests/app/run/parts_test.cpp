@@ -157,7 +157,7 @@ struct RowOfFour {
       state.materials.push_back(make_material(law_example<NeoHookean>(), body.begin, body.end, body.name));
     order.row = {0, 1, 2, 3}, order.first = {0, 2, 4}, order.blocks = 1;
   }
-  RunView<2> view() const { return {problem, state, order, fields, "the only", 0, 0}; }
+  RunView<2> view() const { return {problem, state, order, fields, "the only", "run", 0, 0}; }
 };
 
 TEST(Front, IsTheCoordinateThatAShareOfTheMassDoesNotPass)
