@@ -25,7 +25,7 @@ TEST(PlasticWork, IsThatOfTheBodiesAsked)
   CellOrder order;
   order.row = {0, 1, 2}, order.first = {0, 1, 3}, order.blocks = 1;
   const std::vector<VelocityField<2>> fields;
-  const RunView<2> view{problem, state, order, fields, "the only", 0, 0};
+  const RunView<2> view{problem, state, order, fields, "the only", "run", 0, 0};
   EXPECT_EQ(plastic_work(view, {1, 2}), 10 * 2 + 1000 * 3);
   EXPECT_EQ(plastic_work(view), 10 * 2 + 1000 * 3 + 7e6);
 }
