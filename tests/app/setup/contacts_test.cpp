@@ -127,7 +127,9 @@ TEST(ContactsOfBodies, LeaveOutBodiesThatCouldNotBeFilled)
   scene.contacts = {slides, sticks};
   SceneErrorCollector errors(scene);
   std::vector<std::string> warnings;
-  EXPECT_TRUE(contacts_of(scene, {{"a", 0, 0, {}}, {"b", 0, 0, {}}}, errors, warnings).laws.empty());
+  const Contacts contacts = contacts_of(scene, {{"a", 0, 0, {}}, {"b", 0, 0, {}}}, errors, warnings);
+  ASSERT_EQ(contacts.laws.size(), 1u) << "that of the two bodies that are there, which no contact names together";
+  EXPECT_EQ(contacts.laws[0].friction, 0);
   EXPECT_TRUE(contacts_of(scene, {}, errors, warnings).laws.empty());
 }
 
