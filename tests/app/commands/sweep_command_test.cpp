@@ -213,7 +213,8 @@ TEST_F(SweepProgram, GivesAllOptionsToThePackage)
   ::unsetenv("TALUS_PACKAGE");
   EXPECT_EQ(all.code, 7) << all.err;
   EXPECT_THAT(all.out, testing::StartsWith("sweep|--program|/"));
-  EXPECT_THAT(all.out, testing::EndsWith("talus|a b.yaml|--out=c|--jobs=2|--threads=3|--launcher=--x -n 1|--list|--no-pictures|--quick|--quiet\n"));
+  EXPECT_THAT(all.out,
+              testing::EndsWith("talus|a b.yaml|--out=c|--jobs=2|--threads=3|--launcher=--x -n 1|--list|--no-pictures|--quick|--quiet\n"));
   EXPECT_THAT(one.out, testing::EndsWith("talus|a.yaml|--case=4\n"));
 }
 

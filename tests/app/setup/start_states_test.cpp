@@ -182,7 +182,8 @@ TEST_F(StartStates, ARestartIsBitwiseIdentical)
   EXPECT_EQ(read("whole/history.csv"), read("parts/history.csv"));
   ASSERT_EQ(run({.outputs = outputs}, "other", "--until 40").code, 4);
   write("state.csv", column_table(2, 1.01));
-  EXPECT_THAT(talus("run --resume other").err, HasSubstr("the table of a body, or the surface of a rigid body is not the one that the checkpoint was made with"));
+  EXPECT_THAT(talus("run --resume other").err,
+              HasSubstr("the table of a body, or the surface of a rigid body is not the one that the checkpoint was made with"));
 }
 
 TEST_F(StartStates, EffectiveStressAndPorePressureBecomeTotalStress)
