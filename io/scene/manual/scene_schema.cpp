@@ -231,7 +231,7 @@ std::string scene_schema()
   outputs["particles"]["properties"]["fields"]["items"] = {
       {"anyOf", {known, {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}}}};
   Json& strict = schema["else"]["properties"]["outputs"]["properties"]["particles"]["properties"]["fields"]["items"];
-  strict["enum"] = known.at("enum");
+  strict["anyOf"] = {{{"enum", known.at("enum")}}, {{"pattern", "^[a-z0-9_]+_factor$"}}};  // the latter of parameters that vary
   outputs["mesh"]["properties"]["fields"]["items"] = items_of(words_of_table(node_fields()));
   return schema.dump(2) + "\n";
 }
