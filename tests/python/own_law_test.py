@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -348,13 +349,17 @@ class OwnLaws(unittest.TestCase):
         self.assertIn("law broken of libbroken.so crashed (SIGSEGV", done.stderr)
 
     def test_a_loop_without_end_is_named_when_the_run_is_ended(self):
-        name = self.broken("volatile int forever = b->time > 0.01 && b->id[0] > 20; while (forever) ;")
+        name = self.broken('volatile int forever = b->time > 0.01 && b->id[0] > 20; if (forever) fclose(fopen("loops", "w")); while (forever) ;')
         command = [PROGRAM, "run", name, "--out", "broken", "--quiet", "--threads", "2"]
         with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
-            for _ in range(2):
-                with self.assertRaises(subprocess.TimeoutExpired):
-                    run.wait(1.5)
-                run.send_signal(signal.SIGINT)
+            for _ in range(600):  # the machine may be busy
+                if (self.folder / "loops").exists():
+                    break
+                time.sleep(0.1)
+            run.send_signal(signal.SIGINT)
+            with self.assertRaises(subprocess.TimeoutExpired):
+                run.wait(1.5)
+            run.send_signal(signal.SIGINT)
             self.assertEqual(run.wait(30), -signal.SIGINT)
             self.assertIn("error: law broken of libbroken.so had not returned in a block of particles, from ", run.stderr.read())
 
