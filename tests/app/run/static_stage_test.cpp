@@ -121,6 +121,25 @@ std::string block(Real tilt, Real low = 0)
          "stages: [{type: static, increments: 4}]\noutputs: {history: {every: 0.25}}\n";
 }
 
+/// A block between a floor and a wall that moves: what the wall does is what the block stores, in any number of increments.
+TEST_F(StaticStage, WallsDoTheWorkThatABlockStores)
+{
+  write("push.yaml", R"(title: Pushed block
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [1, 1], cells: [4, 4]}}
+materials: [{name: rubber, law: linear_elastic, density: 1000, youngs_modulus: 1.0e6, poisson_ratio: 0}]
+bodies: [{name: block, material: rubber, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 4}]
+boundaries: [{type: roller, on: y_min}, {type: roller, on: x_min}, {type: velocity, on: y_max, velocity: [0, -0.001]}]
+stages: [{type: quasi_static, duration: 1, increments: 5}]
+outputs: {history: {every: 0.2}}
+)");
+  const Outcome run = talus("run push.yaml --out run");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Real stored = last(history("run"), "strain");
+  EXPECT_NEAR(stored, 0.5, 0.005) << "E e^2 / 2";
+  EXPECT_NEAR(last(history("run"), "wall_work"), stored, 1e-3 * stored);
+}
+
 TEST_F(StaticStage, KnowsCoulombFriction)
 {
   write("block.yaml", block(0.3));
