@@ -9,7 +9,7 @@ void StudyCommands::add_sweep(CLI::App& app)
 {
   CLI::App* sweep = app.add_subcommand("sweep", "run a scene with several values of its keys, and put their results into a table");
   const OptionsOfPython words(*sweep, sweep_);
-  words.add_file("study", "study (.yaml): scene, what varies, what is told")->type_name(scene_value);
+  words.add_file("study", "study (.yaml): scene, what varies, what the table collects")->type_name(scene_value);
   words.add("--out", "folder of cases and table; default runs/<name of the study>")->type_name(folder_value);
   CLI::Option* jobs = words.add("--jobs", "cases at a time; default as many as there are cores for")->check(number_within(1, 1024));
   words.add("--threads", "threads of each; default the cores over the cases at a time")->check(number_within(1, 1024));

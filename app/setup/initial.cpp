@@ -171,11 +171,11 @@ bool carry_flow(const Scene& scene, const KeptBodies<D>& there, std::span<const 
   p.water_gradient.assign(p.id.size(), Vec<D>::Zero());
   p.water_at_rest.assign(p.id.size(), 0);
   for (const TakenParticles& taken : all)
-    for (std::size_t k = 0; k < taken.rows.size() && flows(bodies[taken.body].name); ++k) {
-      const std::size_t row = to_size(bodies[taken.body].begin) + k, source = to_size(taken.rows[k]);
-      p.water.set(row, from.water[source]), p.water_gradient.set(row, from.water_gradient[source]);
-      p.water_at_rest.set(row, from.water_at_rest[source]);
-    }
+    if (flows(bodies[taken.body].name))
+      for_each_pair(bodies[taken.body].begin, taken.rows, [&](std::size_t row, std::size_t source) {
+        p.water.set(row, from.water[source]), p.water_gradient.set(row, from.water_gradient[source]);
+        p.water_at_rest.set(row, from.water_at_rest[source]);
+      });
   return true;
 }
 
@@ -187,8 +187,7 @@ bool carry_columns(const Scene& scene, const KeptBodies<D>& other, std::span<con
   const auto n = p.id.size();
   const auto for_each_taken = [&](auto&& f) {
     for (const TakenParticles& taken : all)
-      for (std::size_t k = 0; k < taken.rows.size(); ++k)
-        f(taken, to_size(bodies[taken.body].begin) + k, to_size(taken.rows[k]));
+      for_each_pair(bodies[taken.body].begin, taken.rows, [&](std::size_t row, std::size_t source) { f(taken, row, source); });
   };
   if (scene.transfer.own_affine_field() && !from.C.empty()) {
     p.C = p.L;

@@ -4,6 +4,7 @@
 #include "app/observers/checkpoints.hpp"
 #include "app/setup/checks/scene_error_collector.hpp"
 #include "core/parallel/communicator.hpp"
+#include "core/parallel/threads.hpp"
 #include "core/particles.hpp"
 #include "io/scene/scene.hpp"
 #include "mesh/mesh.hpp"
@@ -28,6 +29,13 @@ struct TakenParticles {
   std::string law;          ///< there
   std::vector<Index> rows;  ///< there
 };
+
+/// Calls f(row of this scene, row there) for particles that stand from `begin` on in the order of `rows`, by all threads.
+template <class F>
+void for_each_pair(Index begin, const std::vector<Index>& rows, F&& f)
+{
+  parallel_for(static_cast<Index>(rows.size()), [&](Index i) { f(to_size(begin + i), to_size(rows[to_size(i)])); });
+}
 
 /// Columns that a scene may have or not, where both have them; in other bodies they are as at rest.  Returns whether water flows on: its
 /// pressures are then those of that run.

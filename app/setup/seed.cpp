@@ -251,14 +251,6 @@ class Seeder {
     return rows;
   }
 
-  /// f(row of this scene, row there)
-  template <class F>
-  static void for_each_pair(Index begin, const std::vector<Index>& rows, F&& f)
-  {
-    parallel_for(static_cast<Index>(rows.size()),
-                 [&](Index i) { f(static_cast<std::size_t>(begin + i), static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])); });
-  }
-
   /// Rows behind those there are; masses change as the density of the material does.
   void copy(const Particles<D>& from, const std::vector<Index>& rows, Real heavier, Index begin, std::int64_t first_id)
   {

@@ -17,7 +17,7 @@ def add_sweep(commands: Any, whole: Any) -> None:
     one = commands.add_parser("sweep", help="run a scene with several values of its keys, and put their results into a table",
                               description="Runs a scene with several values of its keys, and puts their results into a table.  Cases that "
                                           "are done are not repeated: the same command goes on.")
-    one.add_argument("file", metavar="study", type=Path, help="study (.yaml): scene, what varies, what is told")
+    one.add_argument("file", metavar="study", type=Path, help="study (.yaml): scene, what varies, what the table collects")
     one.add_argument("--out", type=Path, metavar="DIR", help="folder of cases and table; default runs/<name of the study>")
     one.add_argument("--jobs", type=whole, metavar="N", help="cases at a time; default as many as there are cores for")
     one.add_argument("--threads", type=whole, metavar="N", help="threads of each; default the cores over the cases at a time")

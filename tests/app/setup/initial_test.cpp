@@ -143,9 +143,10 @@ TEST_F(Initial, AnotherLawStartsFromTheStress)
   Bank refused = second();
   refused.material = "law: neo_hookean, density: 2000, youngs_modulus: 2.0e6, poisson_ratio: 0.3";
   EXPECT_THAT(refusal(refused),
-              testing::ContainsRegex("refused.yaml:5:10: error: bodies\\[0\\] \"bank\".material: the particles come from law "
-                                     "\"drucker_prager\", and law \"neo_hookean\" cannot start from their stress; of other laws "
-                                     "linear_elastic, viscoelastic, drucker_prager, .* or [a-z_]+ can\n"));
+              HasSubstr("refused.yaml:5:10: error: bodies[0] \"bank\".material: the particles come from law \"drucker_prager\", and law "
+                        "\"neo_hookean\" cannot start from their stress; of other laws linear_elastic, viscoelastic, drucker_prager, "
+                        "mohr_coulomb, modified_cam_clay, cohesive_cam_clay, snow, mu_i, elastic_herschel_bulkley, von_mises, "
+                        "johnson_cook, mechanical_threshold or porous_ductile can\n"));
 }
 
 /// Stiffer soil keeps its stress; rubber has the stress of its deformation, and says so.
