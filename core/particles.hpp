@@ -46,6 +46,7 @@ struct Particles {
   ParticleColumn<Real> side;              ///< of the nearest sheet, see SideOfSheet [-]
   ParticleColumn<Vec<D>> reference;       ///< position at which the kernel weighs, where that is not always x [m]
   ParticleColumn<Mat<D>> G;               ///< deformation gradient since the particle was there
+  ParticleColumn<Mat<D>> domain;          ///< edges of what the particle covers, the columns, where it may be split [m]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
 
@@ -74,6 +75,7 @@ struct Particles {
     f("water_pressure", "Pa", self.water), f("water_gradient", "Pa/m", self.water_gradient);
     f("water_at_rest", "Pa", self.water_at_rest);
     f("side", "-", self.side), f("reference", "m", self.reference), f("since_reference", "-", self.G);
+    f("domain", "m", self.domain);
   }
 };
 

@@ -34,7 +34,7 @@ Real energy_gain(const Model<D>& m, Real kinetic)
   const EnergyLedger e = m.state.energy.at_velocities();
   const Real work = e.gravity + e.loads + e.walls + e.arrival + e.friction + e.damping;
   const Real largest = std::max(m.problem.limits.least_energy, e.largest_term(kinetic));
-  return largest > 0 ? (kinetic + e.carried_away - e.kinetic_start + e.internal - work) / largest : 0;
+  return largest > 0 ? (kinetic + e.gone() - e.kinetic_start + e.internal - work) / largest : 0;
 }
 
 template <int D>

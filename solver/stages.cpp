@@ -10,6 +10,7 @@
 #include "solver/run_limits.hpp"
 #include "solver/stable_step.hpp"
 #include "solver/statics/static_stage.hpp"
+#include "solver/step/resample_step.hpp"
 #include "solver/step/step_parts.hpp"
 
 namespace talus {
@@ -255,6 +256,8 @@ void make_steps(Model<D>& m, const Stage& stage, const StepLimits& limits, const
       make_step(m, left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted);  // no sliver of a step at the end
     }
     stop_if_invalid(m, m.state.clock.step > step);
+    if (!stage.equilibrium)
+      resample_particles(m);
     if (step == m.state.stage.first_step)
       m.state.stage.first_residual = m.state.residual;
     // Energies of all particles are added up only where the rest is as it should be.

@@ -10,7 +10,8 @@ namespace talus {
 Real EnergyNow::largest_term() const noexcept
 {
   Real largest = 0;
-  for (const Real term : {kinetic_start, kinetic, strain, plastic, friction, damping, carried_away, gravity, loads, walls, waves, size})
+  for (const Real term :
+       {kinetic_start, kinetic, strain, plastic, friction, damping, carried_away, resampled, gravity, loads, walls, waves, size})
     largest = std::max(largest, std::abs(term));
   return largest;
 }
@@ -56,7 +57,8 @@ void BalanceHistory<D>::see(const RunView<D>& view, RunEvent event)
       before_.gravity += stage_.gravity, before_.loads += stage_.loads, before_.walls += stage_.walls;
       before_.waves += stage_.waves;
       before_.friction += stage_.friction, before_.damping += stage_.damping, before_.internal += stage_.internal;
-      before_.carried_away += stage_.carried_away, before_.plastic_deleted += stage_.plastic_deleted;
+      before_.carried_away += stage_.carried_away, before_.resampled += stage_.resampled;
+      before_.plastic_deleted += stage_.plastic_deleted;
       transfer_before_ += stage_.transfer(kinetic_end_);
       taken_out_before_ += taken_out_;
       // The difference between the end of one stage and the beginning of the next is due to bodies that appeared or vanished.
@@ -87,6 +89,7 @@ EnergyNow BalanceHistory<D>::energy(const RunView<D>& view) const
   now.friction = 0 - before_.friction - e.friction;  // avoids -0
   now.damping = taken_out_before_ + taken_out_ - before_.damping - e.damping;
   now.carried_away = before_.carried_away + e.carried_away;
+  now.resampled = before_.resampled + e.resampled;
   now.gravity = before_.gravity + e.gravity;
   now.loads = before_.loads + e.loads;
   now.walls = before_.walls + e.walls;
@@ -94,7 +97,7 @@ EnergyNow BalanceHistory<D>::energy(const RunView<D>& view) const
   now.size = e.largest_seen;
   now.transfer = transfer_before_ + e.transfer(now.kinetic + taken_out_);
   now.defect = now.gravity + now.loads + now.walls - (now.kinetic - now.kinetic_start) - now.strain - now.plastic - now.friction -
-               now.damping - now.carried_away - now.transfer;
+               now.damping - now.carried_away - now.resampled - now.transfer;
   return now;
 }
 

@@ -10,11 +10,12 @@
 namespace talus {
 
 /// Energies since the start of the run [J].  Works are positive if done on the bodies; losses are positive.
-/// gravity + loads + walls = (kinetic - kinetic_start) + strain + plastic + friction + damping + carried_away + transfer + defect.
+/// gravity + loads + walls = (kinetic - kinetic_start) + strain + plastic + friction + damping + carried_away + resampled + transfer + defect.
 struct EnergyNow {
   Real kinetic_start{}, kinetic{};  ///< kinetic_start: at the start, plus that of bodies that appeared
   Real strain{}, plastic{};         ///< including particles that were removed
   Real friction{}, damping{};       ///< damping: including the motion removed at the end of a geostatic stage
+  Real resampled{};                 ///< kinetic energy lost where particles are merged, less what splitting gains
   Real carried_away{};              ///< kinetic energy of particles that left the mesh, failed, or were removed by a stage
   Real gravity{}, loads{}, walls{};
   Real waves{};     ///< energy of incident waves: not a term of the balance, but a scale of it
@@ -31,6 +32,7 @@ struct EnergyNow {
                       saved("friction", &EnergyNow::friction),
                       saved("damping", &EnergyNow::damping),
                       saved("carried_away", &EnergyNow::carried_away),
+                      saved("resampled", &EnergyNow::resampled),
                       saved("gravity", &EnergyNow::gravity),
                       saved("loads", &EnergyNow::loads),
                       saved("walls", &EnergyNow::walls),

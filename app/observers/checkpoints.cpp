@@ -116,11 +116,13 @@ void check_sizes(const State<D>& state, const std::vector<bool>& columns, std::i
   // a rank without particles does not know the columns
   const bool known = std::find(columns.begin(), columns.end(), true) != columns.end();
   must(!known || filled_columns(particles) == columns || particles.size() == 0, "columns");
-  must(n_particles <= limits.particles, "bodies");
+  must(n_particles <= limits.particles + state.resampling.splits, "bodies");
   const auto within = [](const auto& column, auto limit) {
     return std::all_of(column.begin(), column.end(), [&](auto value) { return 0 <= value && value < limit; });
   };
-  must(within(particles.cell, limits.cells) && within(particles.id, std::int64_t{limits.particles}), "particles");
+  const KnownIds known_ids{limits.particles, state.resampling.splits};
+  must(within(particles.cell, limits.cells) && std::ranges::all_of(particles.id, [&](std::int64_t id) { return known_ids.has(id); }),
+       "particles");
 }
 
 /// Sets the laws of bodies that change in a stage.
@@ -243,7 +245,8 @@ fs::path CheckpointList::take_over(State<D>& state, Recorder<D>& recorder, const
     find_invalid(state.particles, state.bodies, state.materials, faults);
     refuse_if_any(faults);
     load(arrays, "recorder", recorder);
-    if (!state.boundary.fits() || !recorder.fits(state.boundary.conditions().size(), state.bodies.size(), limits.particles))
+    if (!state.boundary.fits() ||
+        !recorder.fits(state.boundary.conditions().size(), state.bodies.size(), {limits.particles, state.resampling.splits}))
       throw EnvironmentError("the walls, bodies or points of the checkpoint do not fit the scene");
   };
   const auto [from, reasons] = newest([&](const fs::path& file) {

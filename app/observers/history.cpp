@@ -59,6 +59,10 @@ struct RunNow {
   Vec<D> centre;  ///< centre of mass [m]; NaN without mass
   EnergyNow energy;
 };
+struct ResampleNow {
+  const ResampleLedger& ledger;
+  EnergyNow energy;
+};
 template <int D>
 struct ReactionNow {
   Vec<D> reaction;  ///< reaction [N]
@@ -177,6 +181,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
   add(run_columns(), "");
   if (start.problem.flow.any())
     add(flow_columns(), "");
+  if (any_resampled(start.problem.resampling))
+    add(resample_columns(), "");
   if (start.problem.equations != nullptr)
     add(solve_columns(), "");
   for (const BoundaryCondition<D>& wall : start.state.boundary.conditions())
@@ -234,6 +240,8 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
   put_all<D>(run_columns(), RunNow<D>{view, sums, centre, accounts.energy(view)}, row);
   if (view.problem.flow.any())
     put_all<D>(flow_columns(), view.state.flow, row);
+  if (any_resampled(view.problem.resampling))
+    put_all<D>(resample_columns(), ResampleNow{view.state.resampling, accounts.energy(view)}, row);
   if (view.problem.equations != nullptr)
     put_all<D>(solve_columns(), view.state.solve, row);
   const Real elapsed = view.state.clock.time - state_.time;

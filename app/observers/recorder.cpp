@@ -158,13 +158,13 @@ void Recorder<D>::begin_again(const RunView<D>& view)
 }
 
 template <int D>
-bool Recorder<D>::fits(std::size_t walls, std::size_t bodies, Index particles) const
+bool Recorder<D>::fits(std::size_t walls, std::size_t bodies, const KnownIds& ids) const
 {
   if (!body_forces_.fits(bodies))
     return false;
   if (!outputs_.history)
     return true;
-  const auto known = [&](std::int64_t id) { return 0 <= id && id < particles; };  // it may have been deleted
+  const auto known = [&](std::int64_t id) { return ids.has(id); };  // it may have been deleted
   return history_state_.impulse.size() == walls && history_state_.angular.size() == walls &&
          history_state_.given.size() == outputs_.history->bodies.size() &&
          history_state_.followed.size() == outputs_.history->points.size() && std::ranges::all_of(history_state_.followed, known);
@@ -250,6 +250,7 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent event)
   warn(view);
   last_.clock = view.state.clock, last_.timings = view.state.timings;
   last_.mass = view.state.mass, last_.monitor = view.state.monitor, last_.unsettled = view.state.flow.unsettled;
+  last_.resampling = view.state.resampling;
   if (event != RunEvent::stage_done)
     return;
   done_before_ += view.state.clock.time - stage_start_;  // a stage that seeks equilibrium may end early

@@ -10,6 +10,7 @@
 #include "app/observers/schedule.hpp"
 #include "io/output/run_summary.hpp"
 #include "io/output/vtk.hpp"
+#include "solver/particles/resample.hpp"
 #include "solver/run_view.hpp"
 
 namespace talus {
@@ -23,14 +24,15 @@ struct LastSeen {
   Real mass_there{};  ///< mass of the particles [kg]
   LimitMonitor monitor;
   Real unsettled{};  ///< of FlowLedger
+  ResampleLedger resampling;
   EnergyNow energy;
   MomentumNow<D> momentum;
   static constexpr auto fields()
   {
-    return std::tuple{saved("clock", &LastSeen::clock),     saved("timings", &LastSeen::timings),
-                      saved("mass", &LastSeen::mass),       saved("mass_there", &LastSeen::mass_there),
-                      saved("watched", &LastSeen::monitor), saved("unsettled", &LastSeen::unsettled),
-                      saved("energy", &LastSeen::energy),   saved("momentum", &LastSeen::momentum)};
+    return std::tuple{
+        saved("clock", &LastSeen::clock),           saved("timings", &LastSeen::timings), saved("mass", &LastSeen::mass),
+        saved("mass_there", &LastSeen::mass_there), saved("watched", &LastSeen::monitor), saved("unsettled", &LastSeen::unsettled),
+        saved("resampling", &LastSeen::resampling), saved("energy", &LastSeen::energy),   saved("momentum", &LastSeen::momentum)};
   }
 };
 
@@ -62,7 +64,7 @@ class Recorder {
   /// dropped.  Returns descriptions of missing files, on the root.
   std::vector<std::string> resume(const RunView<D>& view);
   /// Whether fields() read from a checkpoint have the sizes for this number of walls, bodies, and initial particles.
-  bool fits(std::size_t walls, std::size_t bodies, Index particles) const;
+  bool fits(std::size_t walls, std::size_t bodies, const KnownIds& ids) const;
   /// Continues from such a state with new files in another folder.
   void begin_again(const RunView<D>& view);
   /// Returns when the frame that is being written is on the disk.  Throws EnvironmentError if it could not be written.

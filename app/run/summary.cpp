@@ -27,6 +27,7 @@ EnergyNow balance_of(const StageResult& stage)
   now.friction = 0 - e.friction;  // avoids -0
   now.damping = 0 - e.damping;
   now.carried_away = e.carried_away;
+  now.resampled = e.resampled;
   now.gravity = e.gravity;
   now.loads = e.loads;
   now.walls = e.walls;
@@ -84,6 +85,8 @@ EnergyAudit audit(const Recorder<D>& recorder)
   const EnergyNow& total = recorder.last_seen().energy;
   for (const auto& [name, value] : terms_of(total))
     audit.terms.push_back({std::string(name), value, "J"});
+  if (total.resampled != 0)
+    audit.terms.push_back({"resampled", total.resampled, "J"});
   if (total.dissipated() > 0)
     audit.terms.push_back({"unexplained / dissipated", share(total.defect, total.dissipated()), ""});
   for (std::size_t s = 0; recorder.stages().size() > 1 && s < recorder.stages().size(); ++s) {
@@ -92,6 +95,8 @@ EnergyAudit audit(const Recorder<D>& recorder)
     const std::string prefix = fmt::format("stage {} {}: ", s, stage.name);
     for (const auto& [name, value] : terms_of(balance))
       audit.terms.push_back({prefix + std::string(name), value, "J"});
+    if (balance.resampled != 0)
+      audit.terms.push_back({prefix + "resampled", balance.resampled, "J"});
     if (balance.dissipated() > 0)
       audit.terms.push_back({prefix + "unexplained / dissipated", share(balance.defect, balance.dissipated()), ""});
   }
@@ -286,6 +291,9 @@ std::string table(const Recorder<D>& recorder, const RunSummary& summary)
                           stage.first_residual.value_or(0));
     else if (stage.first_residual)
       text += fmt::format("stage {}: unbalanced force {:.3g} of the loads when it began\n", stage.name, *stage.first_residual);
+  if (last.resampling.splits + last.resampling.merges > 0)
+    text += fmt::format("{} particles were split and {} merged into others, which took {:.4g} J of kinetic energy\n",
+                        last.resampling.splits, last.resampling.merges, last.energy.resampled);
   text += fmt::format("mass {:.6g} kg", last.mass.start);
   if (last.mass.placed > 0)
     text += fmt::format(", and {:.6g} kg ({} particles) that stages placed", last.mass.placed, last.mass.placed_count);

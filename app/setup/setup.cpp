@@ -6,13 +6,13 @@
 #include "app/observers/field_columns.hpp"
 #include "app/observers/history.hpp"
 #include "app/observers/runout.hpp"
+#include "app/setup/body_options.hpp"
 #include "app/setup/boundaries_of_scene.hpp"
 #include "app/setup/checks/softening_cells.hpp"
 #include "app/setup/checks/thin_layers.hpp"
 #include "app/setup/contacts_of_scene.hpp"
 #include "app/setup/flow_of_scene.hpp"
 #include "app/setup/loads_of_scene.hpp"
-#include "app/setup/references_of_scene.hpp"
 #include "app/setup/rigid_of_scene.hpp"
 #include "app/setup/seed.hpp"
 #include "app/setup/stages_of_scene.hpp"
@@ -303,6 +303,10 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   for (std::size_t body = 0; body < scene.bodies.size(); ++body)
     if (const ReferenceOptions& reference = setup.conditions.references[body]; reference.update != ReferenceUpdate::always)
       setup.notes.push_back(describe(scene.bodies[body].name, reference));
+  setup.conditions.resampling = resampling_of(scene);
+  for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+    if (const std::optional<ResampleOptions>& resample = setup.conditions.resampling[body])
+      setup.notes.push_back(describe(scene.bodies[body].name, *resample));
   add_rigid_bodies(scene, mesh, ranks, errors, setup);
   warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, setup.conditions.contacts, ranks,
                       setup.warnings);

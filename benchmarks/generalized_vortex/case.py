@@ -15,6 +15,7 @@ CRITERIA = {  # of renewals, from none kept to all
     "strain > 0.5": {"update": "adaptive", "distortion": 0.5}, "strain > 5": {"update": "adaptive", "distortion": 5},
     "|J - 1| > 0.5": {"update": "adaptive", "volume_change": 0.5}, "never": {"update": "never"}}
 AT = 0.07  # m, at which they are compared
+SPLIT = {"quick": [0.1, 0.07, 0.05], "full": [0.1, 0.07, 0.05, 0.035]}  # m, of bodies whose particles are split
 TURNS = [1, 0.1]  # rad, largest rotation: that of the literature, and one in which hardly any particle leaves its cell
 
 
@@ -57,11 +58,13 @@ def errors_over_time(run, turn, data):
     return times, found
 
 
-def start(lab, kernel, turn, size, data, count=FEWEST, criterion=None):
-    """Starts one run with `count` particles per cell, and references that are renewed by one of CRITERIA."""
+def start(lab, kernel, turn, size, data, count=FEWEST, criterion=None, split=False):
+    """Starts one run with `count` particles per cell, references that are renewed by one of CRITERIA, particles that are split."""
     velocity, force = formulas(turn, data)
     kept = {"bodies[0].reference": CRITERIA[criterion]} if criterion else {}
-    return lab.run(f"{CASE}/scene.yaml", f"{kernel}_{turn}_dx{size}_{count}{'_reference' + str(list(CRITERIA).index(criterion)) if criterion else ''}", {
+    kept |= {"bodies[0].resample": {}} if split else {}
+    name = f"{kernel}_{turn}_dx{size}_{count}{'_reference' + str(list(CRITERIA).index(criterion)) if criterion else ''}{'_split' if split else ''}"
+    return lab.run(f"{CASE}/scene.yaml", name, {
         **kept, "mesh.size": size, "bodies[0].particles_per_cell": count, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel], "bodies[0].velocity": velocity,
         "loads[0].acceleration": force})
 
@@ -90,6 +93,24 @@ def judge_references(lab, data):
               for (size, run), error in zip(runs.items(), errors)),
             *(tools.Result(CASE, f"displacement error, projected, 1 rad, cells of {AT} m, renewed where {criterion}", "-", found[criterion][0], "reported", None, 0.0,
                            source, run) for criterion, run in by.items())]
+
+
+def judge_resampling(lab, data):
+    """Results of few particles per cell that are split where shear draws them apart, by kernel, and the curves of errors."""
+    results, curves = [], {}
+    for kernel in ("projected", "umls"):
+        runs = {size: start(lab, kernel, 1, size, data, split=True) for size in SPLIT[lab.level]}
+        errors = [max(errors_over_time(run, 1, data)[1]) for run in runs.values()]
+        name = f"{kernel}, 1 rad, particles split"
+        curves[name] = MARKS[kernel][0] + ":", list(runs), errors
+        lab.convergence(CASE, f"displacement error, {name}", list(runs), errors, expected=2)
+        results += [tools.Result(CASE, f"displacement error, {name}, cells of {size} m", "-", error, "reported", None, 0.0, data["source"], run)
+                    for (size, run), error in zip(runs.items(), errors)]
+        results += [tools.Result(CASE, f"particles at the end over those at the start, {name}, cells of {size} m", "-",
+                                 len(run.frames[-1]["mass"]) / len(run.frames[0]["mass"]), "reported", None, 0.0, data["source"], run) for size, run in runs.items()]
+        results.append(tools.Result(CASE, f"order of convergence, {name}", "-", tools.observed_order(list(runs), errors), "at least", data["order asked"], 2.0,
+                                    data["source"], list(runs.values())[-1]))
+    return results, curves
 
 
 def draw(figure, curves, run, data):
@@ -129,6 +150,8 @@ def evaluate(lab):
         results.append(tools.Result(CASE, f"order of convergence, {name}", "-", tools.observed_order(list(runs), errors), "at least" if judged else "reported",
                                     data["order asked"] if judged else None, 2.0, data["source"], list(runs.values())[-1]))
         lab.convergence(CASE, f"displacement error, {name}", list(runs), errors, expected=2)
+    split, of_split = judge_resampling(lab, data)
+    curves |= of_split
     lab.figure(CASE, "verification_vortex", lambda figure: draw(figure, curves, list(plan["projected", 1, MANY].values())[-1], data), size=(7.4, 3.2),
                caption="Generalized vortex: error of the displacement, and a sector of the ring at the largest rotation.")
-    return results + judge_references(lab, data)
+    return results + split + judge_references(lab, data)

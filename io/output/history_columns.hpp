@@ -94,6 +94,17 @@ constexpr auto flow_columns()
                        [](const auto& flow) { return flow.residual; })};
 }
 
+/// Columns of particles that are split and merged.
+constexpr auto resample_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{
+      quantity<number>("splits", "-", "particles that were split so far", [](const auto& now) { return now.ledger.splits; }),
+      quantity<number>("merges", "-", "particles that were merged into others so far", [](const auto& now) { return now.ledger.merges; }),
+      quantity<number>("resampled", "J", "kinetic energy lost where particles are merged, less what splitting gains",
+                       [](const auto& now) { return now.energy.resampled; })};
+}
+
 /// Columns of stages that solve for equilibrium.
 constexpr auto solve_columns()
 {

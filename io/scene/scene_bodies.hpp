@@ -15,6 +15,7 @@
 #include "materials/interface/any_law.hpp"
 #include "materials/variation/parameter_variation.hpp"
 #include "solver/options/reference_options.hpp"
+#include "solver/options/resample_options.hpp"
 
 namespace talus {
 
@@ -44,6 +45,7 @@ struct BodySpec {
   std::optional<Index> particles_per_cell;  ///< has a value in every body of a scene that was read, if it fills anything
   std::optional<bool> f_bar;
   std::optional<ReferenceOptions> reference;
+  std::optional<ResampleOptions> resample;
   std::vector<std::string> velocity;
   std::optional<Real> saturated_density;
   std::optional<StartStateSpec> initial;
@@ -63,6 +65,9 @@ struct BodySpec {
                  "johnson_cook and mechanical_threshold, whose flow keeps the volume, false otherwise"),
         group("reference", &BodySpec::reference,
               "the configuration to which weights and gradients belong; default the present one, renewed in each step"),
+        group("resample", &BodySpec::resample,
+              "particles that shear or expansion draws apart are split, and merged again where they crowd; without it they stay what they "
+              "are"),
         optional("velocity", &BodySpec::velocity, any, "m/s",
                  "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\": see formulas"),
         optional("saturated_density", &BodySpec::saturated_density, positive, "kg/m^3",
@@ -74,7 +79,7 @@ struct BodySpec {
   bool fills() const noexcept { return !region.empty() || shape.has_value(); }
 
   /// Keys of a body whose particles come from another run.  All others say how a body is filled, and would not be used there.
-  static constexpr std::array<std::string_view, 4> keys_without_filling{"name", "material", "f_bar", "reference"};
+  static constexpr std::array<std::string_view, 5> keys_without_filling{"name", "material", "f_bar", "reference", "resample"};
   /// f(key, whether it is given) for every other key.
   template <class F>
   void for_each_key_of_filling(F&& f) const

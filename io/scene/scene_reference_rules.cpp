@@ -1,4 +1,4 @@
-// Rules about bodies that keep a reference configuration.
+// Rules about bodies that keep a reference configuration, and about those whose particles are split.
 #include "io/scene/scene_rule_base.hpp"
 
 namespace talus {
@@ -11,6 +11,9 @@ class ReferenceRules : private SceneRuleBase {
 
   std::vector<Finding> broken()
   {
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
+      if (scene_.bodies[i].resample)
+        resample(scene_.bodies[i], fmt::format("bodies[{}].resample", i));
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
       const BodySpec& body = scene_.bodies[i];
       if (!body.reference || body.reference->update == ReferenceUpdate::always)
@@ -32,6 +35,15 @@ class ReferenceRules : private SceneRuleBase {
   }
 
  private:
+  void resample(const BodySpec& body, const std::string& path)
+  {
+    if (body.reference && body.reference->update != ReferenceUpdate::always)
+      add(path, "its reference configuration is that of whole particles: leave this out, or the reference");
+    if (const auto sheet = std::ranges::find_if(scene_.rigid, &RigidSpec::is_sheet); sheet != scene_.rigid.end())
+      add(path, fmt::format("half of a particle could come to the other side of the sheet \"{}\": leave this out", sheet->name));
+    if (!scene_.cuts.empty())
+      add(path, fmt::format("half of a particle could come to the other side of the cut \"{}\": leave this out", scene_.cuts.front().on));
+  }
   /// Whether a body has a material whose law does something, at the start or from a stage on.
   bool has_law(const BodySpec& body, bool (*does_it)(const ConstitutiveLaw&)) const
   {

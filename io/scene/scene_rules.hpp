@@ -22,7 +22,7 @@ std::vector<Finding> broken_stage_rules(const Scene& scene);
 std::vector<Finding> broken_rigid_rules(const Scene& scene);
 /// The errors of the lists `variation` of materials.
 std::vector<Finding> broken_variation_rules(const Scene& scene);
-/// The errors of the key `reference` of bodies.
+/// The errors of the keys `reference` and `resample` of bodies.
 std::vector<Finding> broken_reference_rules(const Scene& scene);
 
 /// What a body can touch that would not know where it is if its reference were never renewed, in words; empty if it stands alone between walls

@@ -16,6 +16,7 @@ const FOUND = [
   ['friction', 'friction at walls and contacts'],
   ['damping', 'damping'],
   ['carried_away', 'carried away by deleted particles'],
+  ['resampled', 'lost where particles are merged'],
   ['transfer_loss', 'lost in transfers between particles and nodes'],
   ['energy_defect', 'not accounted for'],
 ];

@@ -1,6 +1,7 @@
 #include "solver/model/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solver/particles/redistribute.hpp"
 
@@ -52,6 +53,12 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
   if (wanted.reference && particles.reference.empty()) {
     particles.reference = particles.x;
     particles.G.assign(n, Mat<D>::Identity());
+  }
+  if (wanted.domain && particles.domain.empty()) {
+    const ParticleColumn<Real>& volume = particles.volume.empty() ? particles.volume0 : particles.volume;
+    particles.domain.resize(n);
+    for (std::size_t p = 0; p < n; ++p)
+      particles.domain.set(p, std::pow(volume[p], 1.0 / D) * Mat<D>::Identity());
   }
 }
 
@@ -122,7 +129,8 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
                      .pore = problem.water.any(),
                      .flow = problem.flow.any(),
                      .side = problem.rigid.any_sheet(),
-                     .reference = reference};
+                     .reference = reference,
+                     .domain = any_resampled(problem.resampling)};
   fill_columns(problem.columns, state.particles);
   const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))

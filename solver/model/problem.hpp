@@ -16,6 +16,7 @@
 #include "solver/loads/water.hpp"
 #include "solver/options/limit_options.hpp"
 #include "solver/options/reference_options.hpp"
+#include "solver/options/resample_options.hpp"
 #include "solver/options/transfer_options.hpp"
 #include "solver/particles/removal.hpp"
 #include "solver/rigid/rigid_body.hpp"
@@ -35,6 +36,7 @@ struct WantedColumns {
   bool flow = false;          ///< it flows
   bool side = false;          ///< there are sheets
   bool reference = false;     ///< a body has a reference configuration
+  bool domain = false;        ///< particles of a body are split
 };
 /// The parts of a scene other than bodies and their boundary conditions.
 template <int D>
@@ -47,7 +49,8 @@ struct SceneConditions {
   Contacts contacts;
   std::vector<CutLaw> cuts;  ///< by number of the cut of the mesh
   RigidScene<D> rigid;
-  std::vector<ReferenceOptions> references;  ///< of each body; none: all are renewed in each step
+  std::vector<ReferenceOptions> references;                ///< of each body; none: all are renewed in each step
+  std::vector<std::optional<ResampleOptions>> resampling;  ///< of each body; none: particles stay what they are
   RunLimits limits;
   std::vector<std::shared_ptr<const ConstitutiveLaw>> laws_of_user;  ///< of all stages
 };

@@ -85,6 +85,12 @@ struct SolveLedger {
   }
 };
 
+/// Particles that were split and merged since the start of the run, see solver/particles/resample.hpp.
+struct ResampleLedger {
+  std::int64_t splits = 0, merges = 0;
+  static constexpr auto fields() { return std::tuple{saved("splits", &ResampleLedger::splits), saved("merges", &ResampleLedger::merges)}; }
+};
+
 /// Time spent per phase of the step [s], and the number of particle-steps.
 struct Timings {
   Real locate{}, scatter{}, nodes{}, gather{}, stress{}, output{};
@@ -127,6 +133,7 @@ struct State {
   MomentumLedger<D> momentum;
   FlowLedger flow;
   SolveLedger solve;
+  ResampleLedger resampling;
   LimitMonitor monitor;
   Timings timings;
   Real residual = 0;  ///< unbalanced force of the nodes over the loads in the last step [-]
@@ -140,12 +147,12 @@ struct State {
 
   static constexpr auto parts()
   {
-    return std::tuple{saved("clock", &State::clock),       saved("stage", &State::stage),        saved("energy", &State::energy),
-                      saved("mass", &State::mass),         saved("momentum", &State::momentum),  saved("watched", &State::monitor),
-                      saved("flow", &State::flow),         saved("solve", &State::solve),        saved("timings", &State::timings),
-                      saved("residual", &State::residual), saved("crossing", &State::crossing),  saved("walls", &State::boundary),
-                      saved("contacts", &State::contacts), saved("rigid", &State::rigid),        saved("bodies", &State::bodies),
-                      saved("laws", &State::materials),    saved("particles", &State::particles)};
+    return std::tuple{saved("clock", &State::clock),     saved("stage", &State::stage),       saved("energy", &State::energy),
+                      saved("mass", &State::mass),       saved("momentum", &State::momentum), saved("watched", &State::monitor),
+                      saved("flow", &State::flow),       saved("solve", &State::solve),       saved("resampling", &State::resampling),
+                      saved("timings", &State::timings), saved("residual", &State::residual), saved("crossing", &State::crossing),
+                      saved("walls", &State::boundary),  saved("contacts", &State::contacts), saved("rigid", &State::rigid),
+                      saved("bodies", &State::bodies),   saved("laws", &State::materials),    saved("particles", &State::particles)};
   }
 };
 

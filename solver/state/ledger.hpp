@@ -28,6 +28,7 @@ struct EnergyLedger {
   Real kinetic_start{}, plastic_start{};  ///< values at the beginning of the stage
   Real set_to_rest{};                     ///< kinetic energy removed at the end of a stage that ends in equilibrium
   Real carried_away{};                    ///< kinetic energy of deleted particles
+  Real resampled{};                       ///< kinetic energy lost where particles are merged, less what it gains where they are split
   Real plastic_deleted{};                 ///< plastic work of deleted particles
   Real largest_before{};                  ///< largest term of the stages before
   /// Largest term at any time so far, at least the least energy that is judged: the size of the balance.
@@ -49,6 +50,7 @@ struct EnergyLedger {
                       saved("plastic_start", &EnergyLedger::plastic_start),
                       saved("set_to_rest", &EnergyLedger::set_to_rest),
                       saved("carried_away", &EnergyLedger::carried_away),
+                      saved("resampled", &EnergyLedger::resampled),
                       saved("plastic_deleted", &EnergyLedger::plastic_deleted),
                       saved("largest_before", &EnergyLedger::largest_before),
                       saved("largest_seen", &EnergyLedger::largest_seen),
@@ -70,18 +72,20 @@ struct EnergyLedger {
   Real largest_term(Real kinetic_now) const noexcept
   {
     Real largest = largest_before;
-    for (const Real term : {kinetic_start, kinetic_now, internal, gravity, loads, walls, friction, waves, damping, carried_away})
+    for (const Real term : {kinetic_start, kinetic_now, internal, gravity, loads, walls, friction, waves, damping, carried_away, resampled})
       largest = std::max(largest, std::abs(term));
     return largest;
   }
 
+  /// Kinetic energy that particles have lost between steps [J].
+  Real gone() const noexcept { return carried_away + resampled; }
   /// The kinetic energy lost between particles and nodes: the gain of the nodes minus that of the particles, deleted ones included.  The
   /// part that the remap removes is subtracted, because strain, which is computed from remapped velocities, does not provide it.
-  Real transfer(Real kinetic_now) const noexcept { return nodes - remap - (kinetic_now - kinetic_start + carried_away); }
+  Real transfer(Real kinetic_now) const noexcept { return nodes - remap - (kinetic_now - kinetic_start + gone()); }
   /// All work done on the bodies minus the energy terms [J]: zero if the balance is closed, for at_velocities().
   Real defect(Real kinetic_now) const noexcept
   {
-    return gravity + loads + walls + friction + damping - internal - transfer(kinetic_now) - carried_away - (kinetic_now - kinetic_start);
+    return gravity + loads + walls + friction + damping - internal - transfer(kinetic_now) - gone() - (kinetic_now - kinetic_start);
   }
 };
 
@@ -127,7 +131,7 @@ struct MomentumLedger {
   ForceAndMoment<D> loads;  ///< gravity, tractions, body forces
   ForceAndMoment<D> damping;
   ForceAndMoment<D> rest;        ///< of the motion that is removed at the end of stages that seek equilibrium
-  ForceAndMoment<D> changes;     ///< of changes by stages: placed and removed bodies, and mass where a density changes
+  ForceAndMoment<D> changes;     ///< of placed and removed bodies, of mass where a density changes, of particles split and merged
   Vec3 on_nodes = Vec3::Zero();  ///< change of angular momentum of nodes and nodes of small mass within the steps [kg m^2/s]
   static constexpr auto fields()
   {

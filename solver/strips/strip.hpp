@@ -26,7 +26,7 @@ inline constexpr Index strip_padding = pack_size;
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
   Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, water, water_gradient,
-      water_at_rest, side, reference, since_reference;
+      water_at_rest, side, reference, since_reference, domain;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place.
@@ -73,7 +73,8 @@ class StripLayout {
                .water_at_rest = at("water_at_rest"),
                .side = at("side"),
                .reference = at("reference"),
-               .since_reference = at("since_reference")};
+               .since_reference = at("since_reference"),
+               .domain = at("domain")};
   }
   static constexpr std::string_view gradient = "velocity_gradient", affine = "affine";
   /// Arrays of a strip, without gradients and those of its law.
@@ -170,6 +171,7 @@ struct StripColumns {
   StripColumn<Real> volume_ratio{}, averaged{};  ///< of averaged volumes: see StressStrip; `averaged` lasts for a step
   StripColumn<Vec<D>> reference{};               ///< where there are reference configurations, see reference.hpp [m]
   StripColumn<Mat<D>> G{};
+  StripColumn<Mat<D>> domain{};  ///< edges, where particles may be split [m]
   StripIds id{};
   const StripColumn<Mat<D>>& affine_field() const noexcept { return C ? C : L; }
   /// Where the kernel weighs the particles: the cells of strips hold these positions.

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iterator>
 
+#include "solver/strips/domain.hpp"
 #include "solver/transfer/direct_strips.hpp"
 #include "solver/transfer/pore_pressures.hpp"
 #include "solver/transfer/vertex_strips.hpp"
@@ -247,6 +248,8 @@ class BlockSweep {
       std::fill(scratch_.altitude + run.begin, scratch_.altitude + run.end + strip_padding - 1, run.frame->altitude);
     if (columns.G)
       shorten(columns, n, scratch_.altitude);
+    if (columns.domain)
+      deform_domains(columns, n, dt);
     const StripColumn<Real> pore_after = find_pore_pressures(m_, body, columns, dt, scratch_);
     columns.v.pad(n), columns.L.pad(n), columns.F.pad(n), columns.stress.pad(n);
     columns.mass.pad(n), columns.volume0.pad(n), columns.volume.pad(n);

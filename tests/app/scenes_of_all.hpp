@@ -279,6 +279,18 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"references_tpic", {.more = "transfer: {scheme: tpic}\n", .bodies = moving_bodies}});
   all.push_back({"references_by_volume", {.bodies = hanging_body + "{update: adaptive, volume_change: 1.0e-3}}]\n", .boundaries = held}});
 
+  // A body that shear and impact draw apart, of which many are split and merged, beside one that is left alone.
+  for (const auto& [name, law_of_body] : {std::pair<std::string, std::string>{"resampled", SceneParts{}.law}, {"resampled_soil", soil_law}})
+    all.push_back(
+        {name,
+         {.law = law_of_body,
+          .bodies =
+              "bodies:\n"
+              "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3 + 8 * "
+              "y, -1], resample: {longest: 0.6, most: 5, every: 3}}\n"
+              "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: "
+              "[1, -4]}\n"}});
+
   SceneParts two_by_tpic = two_materials;
   two_by_tpic.more = "transfer: {scheme: tpic}\n";
   all.push_back({"two_materials_tpic", two_by_tpic});

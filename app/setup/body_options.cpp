@@ -1,4 +1,4 @@
-#include "app/setup/references_of_scene.hpp"
+#include "app/setup/body_options.hpp"
 
 #include <fmt/format.h>
 
@@ -17,6 +17,18 @@ std::vector<ReferenceOptions> references_of(const Scene& scene)
   return all;
 }
 
+std::vector<std::optional<ResampleOptions>> resampling_of(const Scene& scene)
+{
+  const Index fewest = scene.dimension == 2 ? 24 : 48;  // more than there are after a split in each direction of cells of the default
+  std::vector<std::optional<ResampleOptions>> all;
+  for (const BodySpec& body : scene.bodies) {
+    std::optional<ResampleOptions>& one = all.emplace_back(body.resample);
+    if (one && !one->most)
+      one->most = std::max(fewest, 2 * body.particles_per_cell.value_or(0));
+  }
+  return all;
+}
+
 std::string describe(const std::string& body, const ReferenceOptions& reference)
 {
   if (reference.update == ReferenceUpdate::never)
@@ -26,6 +38,12 @@ std::string describe(const std::string& body, const ReferenceOptions& reference)
   if (reference.shift)
     text += fmt::format(" or a shift of {:.6g} altitudes of a cell", *reference.shift);
   return text;
+}
+
+std::string describe(const std::string& body, const ResampleOptions& resample)
+{
+  return fmt::format("particles of body \"{}\" are split where they are longer than {:.6g} cells, and merged where a cell has more than {}",
+                     body, resample.longest, resample.most.value());
 }
 
 }  // namespace talus
