@@ -6,9 +6,8 @@
 #include <variant>
 
 #include "core/type_list.hpp"
-#include "materials/parts/elasticity.hpp"
-#include "materials/parts/equation_of_state.hpp"
 #include "materials/parts/law.hpp"
+#include "materials/parts/metal.hpp"
 #include "materials/parts/power_near.hpp"
 
 namespace talus {
@@ -37,20 +36,16 @@ struct JohnsonCookDamage {
 };
 
 /// Parameters and formulas that the four variants of the law have in common.  Formulas and numbers: docs/reference/materials.md.
-struct JohnsonCookMetal : Elasticity {
-  Real density{}, yield_stress{}, hardening_coefficient{}, hardening_exponent{}, rate_coefficient{}, reference_rate = 1, thermal_exponent{};
-  Real room_temperature{}, melting_temperature{}, specific_heat{}, heat_fraction = 0.9;
-  std::optional<Real> initial_temperature, conductivity;
+struct JohnsonCookMetal : Metal {
+  Real yield_stress{}, hardening_coefficient{}, hardening_exponent{}, rate_coefficient{}, reference_rate = 1, thermal_exponent{};
+  Real room_temperature{}, melting_temperature{};
+  std::optional<Real> initial_temperature;
   std::optional<JohnsonCookDamage> damage;
-  std::optional<MieGruneisen> mie_gruneisen;
 
-  struct Constants {
-    Real bulk, shear;                     ///< Pa; the bulk modulus is used where there is no equation of state
-    Real heat;                            ///< heat_fraction / (density specific_heat) [K m^3/J]
+  struct Constants : MetalConstants {
     Real range_inverse;                   ///< 1 / (melting - room temperature) [1/K]
     Real rate_inverse;                    ///< 1 / reference_rate [s]
     BinomialSeries hardening, softening;  ///< powers of plastic strain and of homologous temperature
-    std::optional<MieGruneisenCurve> curve;
   };
   Constants constants() const noexcept;
   void check(std::vector<std::string>& problems) const;
@@ -63,10 +58,6 @@ struct JohnsonCookMetal : Elasticity {
 
   /// The strength [Pa of Cauchy stress] at a plastic strain [-], plastic strain rate [1/s] and temperature [K].
   Real flow_stress(Real plastic_strain, Real plastic_rate, Real temperature) const noexcept;
-  template <class T>
-  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
-  /// The diffusivity of heat [m^2/s].
-  Real diffusivity(const Constants&) const noexcept { return conductivity ? *conductivity / (density * specific_heat) : 0; }
 
  protected:
   /// The temperature in a history [K]; that of the parameters if the history has none.
@@ -85,7 +76,6 @@ struct JohnsonCookMetal : Elasticity {
   /// Returns nothing, and changes no history, if the law has no solution in some lane.
   template <class T>
   std::optional<Mat3Of<T>> update(const IncrementOf<T>& in, Memory<T>& memory, const Constants& c) const noexcept;
-  void prestress(const Mat3& stress, Sym3& elastic_left) const noexcept;
 };
 
 template <bool with_damage>
@@ -94,12 +84,6 @@ struct DamageHistory {
 };
 template <>
 struct DamageHistory<false> {};
-template <bool with_energy>
-struct EnergyHistory {
-  Real internal_energy = 0;
-};
-template <>
-struct EnergyHistory<false> {};
 
 /// The strength of Johnson & Cook on logarithmic elasticity, with the return by backward Euler.  The Cauchy stress yields where
 ///     sqrt(3 J2) = (A + B p^n) (1 + C ln(max(rate / reference_rate, 1))) (1 - T*^m)
@@ -117,7 +101,7 @@ struct JohnsonCookOf : JohnsonCookMetal {
   {
     using Law = JohnsonCookOf;
     return std::tuple_cat(
-        std::tuple{required<Law, Real>("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
+        elastic_metal_fields<Law>(),
         std::tuple{
             required<Law, Real>("yield_stress", &Law::yield_stress, positive, "Pa", "A, strength at first yield"),
             required<Law, Real>("hardening_coefficient", &Law::hardening_coefficient, non_negative, "Pa", "B, gain at plastic strain 1"),
@@ -127,46 +111,23 @@ struct JohnsonCookOf : JohnsonCookMetal {
                                 "plastic strain rate below which rate is of no effect"),
             required<Law, Real>("thermal_exponent", &Law::thermal_exponent, positive, "-", "m"),
             required<Law, Real>("room_temperature", &Law::room_temperature, positive, "K", "up to here temperature is of no effect"),
-            required<Law, Real>("melting_temperature", &Law::melting_temperature, positive, "K", "from here on there is no strength"),
-            required<Law, Real>("specific_heat", &Law::specific_heat, positive, "J/(kg K)", "heat by mass and temperature"),
-            optional<Law, Real>("heat_fraction", &Law::heat_fraction, within(0, 1), "-", "share of the plastic work that heats"),
-            optional<Law, std::optional<Real>>("initial_temperature", &Law::initial_temperature, positive, "K",
-                                               "temperature at the start; without it room_temperature"),
-            optional<Law, std::optional<Real>>("conductivity", &Law::conductivity, positive, "W/(m K)",
-                                               "thermal conductivity; without it no heat flows between particles"),
-            group<Law, std::optional<JohnsonCookDamage>>("damage", &Law::damage, "fracture; without it the metal never fails"),
-            group<Law, std::optional<MieGruneisen>>("mie_gruneisen", &Law::mie_gruneisen,
-                                                    "pressure of strong compression, instead of the bulk modulus")});
+            required<Law, Real>("melting_temperature", &Law::melting_temperature, positive, "K", "from here on there is no strength")},
+        heating_fields<Law>(),
+        std::tuple{optional<Law, std::optional<Real>>("initial_temperature", &Law::initial_temperature, positive, "K",
+                                                      "temperature at the start; without it room_temperature")},
+        conductivity_field<Law>(),
+        std::tuple{group<Law, std::optional<JohnsonCookDamage>>("damage", &Law::damage, "fracture; without it the metal never fails")},
+        mie_gruneisen_field<Law>());
   }
 
-  struct State : DamageHistory<with_damage>, EnergyHistory<with_energy> {
-    Sym3 elastic_left = Sym3::Zero();
-    Real plastic_strain = 0, plastic_work = 0;
-    Real temperature = 0;  ///< 0 before the first step: then that of the parameters
-    static constexpr auto fields()
-    {
-      return std::tuple_cat(
-          std::tuple{
-              history("elastic_left", &State::elastic_left, "-", "elastic left Cauchy-Green tensor minus identity: xx, yy, zz, xy, yz, xz"),
-              history("plastic_strain", &State::plastic_strain, "-", "p, accumulated plastic strain, integral of sqrt(2/3 e:e)"),
-              history("plastic_work", &State::plastic_work, "J/m^3", "dissipated energy per initial volume"),
-              history("temperature", &State::temperature, "K", "of the particle: its start and what plastic work has heated")},
-          damage_field(), energy_field());
-    }
+  struct State : DamageHistory<with_damage>, EnergyHistory<with_energy>, MetalState {
+    static constexpr auto fields() { return std::tuple_cat(metal_history<State>(), damage_field(), energy_history<State>()); }
 
    private:
     static constexpr auto damage_field()
     {
       if constexpr (with_damage)
         return std::tuple{history<State, Real>("damage", &State::damage, "-", "share of the life until fracture; failed at 1")};
-      else
-        return std::tuple{};
-    }
-    static constexpr auto energy_field()
-    {
-      if constexpr (with_energy)
-        return std::tuple{history<State, Real>("internal_energy", &State::internal_energy, "J/m^3",
-                                               "work of stress and artificial viscosity per initial volume")};
       else
         return std::tuple{};
     }
@@ -207,7 +168,6 @@ struct JohnsonCookOf : JohnsonCookMetal {
       put(state, &State::internal_energy, memory.energy);
     return *stress;
   }
-  void prestress(const Mat3& stress, State& state) const noexcept { JohnsonCookMetal::prestress(stress, state.elastic_left); }
   /// sqrt(3 J2) minus the strength at rates up to the reference rate [Pa]; zero after failure.  In fast flow it is positive by the effect
   /// of the rate.
   Real yield(const Mat3& stress, const State& state) const noexcept
