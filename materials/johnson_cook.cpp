@@ -183,11 +183,16 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
     pressure = step->pressure(*c.curve, compression);
   }
 
-  if (const auto flowing = flow.strain > 0; damage && memory.keeps_damage && any_of(flowing)) {
+  if (const auto flowing = flow.strain > 0; damage && memory.kept != DamageKept::no && any_of(flowing)) {
     const T triaxiality = -pressure / above_nothing(flow.mises);
     const T strain = damage->fracture_strain<T>(triaxiality, relative * flow.strain, homologous(*this, memory.temperature, c));
-    memory.damage = where(flowing, min(T(memory.damage + flow.strain / strain), T(1)), memory.damage);
+    if (memory.kept == DamageKept::averaged)
+      memory.local_damage += where(flowing, flow.strain / strain, 0);
+    else
+      memory.damage = where(flowing, min(T(memory.damage + flow.strain / strain), T(1)), memory.damage);
   }
+  if (memory.kept == DamageKept::averaged)  // what has failed does not heal where the mean falls
+    memory.damage = max(memory.damage, min(memory.mean_damage, T(1)));
   if (const auto failed = memory.damage >= 1; any_of(failed)) {
     const auto released = [&](const T& cauchy, Real modulus) -> T { return J * cauchy * J * cauchy / (2 * modulus); };
     const T all = released(flow.mises, 3 * c.shear) + released(min(pressure, T(0)), c.bulk);

@@ -205,15 +205,17 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   }
   std::optional<StrainAveraging> strain_averaging() const noexcept override
   {
-    if constexpr (requires { law_.averaging_length(); })
+    if constexpr (requires { law_.averaging_length(); }) {
+      constexpr AveragedHistory<State> numbers = L::averaged_history();
       return StrainAveraging{.length = law_.averaging_length(),
                              .band = law_.band_width(),
                              .largest = law_.largest_averaged(),
-                             .strain = place_in_state<State>(&State::plastic_strain),
-                             .mean = place_in_state<State>(&State::mean_plastic_strain),
-                             .rate = place_in_state<State>(&State::mean_plastic_rate)};
-    else
+                             .strain = place_in_state<State>(numbers.local),
+                             .mean = place_in_state<State>(numbers.mean),
+                             .rate = place_in_state<State>(numbers.rate)};
+    } else {
       return std::nullopt;
+    }
   }
 
  private:
