@@ -9,10 +9,10 @@ namespace talus {
 
 namespace {
 
-using MetalConstants = JohnsonCookMetal::Constants;
+using JohnsonCookConstants = JohnsonCookMetal::Constants;
 
 template <class T>
-T homologous(const JohnsonCookMetal& metal, const T& temperature, const MetalConstants& c) noexcept
+T homologous(const JohnsonCookMetal& metal, const T& temperature, const JohnsonCookConstants& c) noexcept
 {
   using std::max, std::min;
   return min(max(T((temperature - metal.room_temperature) * c.range_inverse), T(0)), T(1));
@@ -20,7 +20,7 @@ T homologous(const JohnsonCookMetal& metal, const T& temperature, const MetalCon
 
 /// A lower bound of the strength [Pa of Cauchy stress] at any plastic strain, without powers; most metal is below it or flows.
 template <class T>
-T least_strength(const JohnsonCookMetal& metal, const T& temperature, const MetalConstants& c) noexcept
+T least_strength(const JohnsonCookMetal& metal, const T& temperature, const JohnsonCookConstants& c) noexcept
 {
   const T heat = homologous(metal, temperature, c);
   return metal.yield_stress * (1 - where(heat > 0, metal.thermal_exponent >= 1 ? heat : T(1), T(0)));
@@ -36,10 +36,10 @@ struct Strength {
 template <class T>
 struct SlowStrength {
   const JohnsonCookMetal& metal;
-  const MetalConstants& c;
+  const JohnsonCookConstants& c;
   PowerNear<T> hardening, softening;
 
-  SlowStrength(const JohnsonCookMetal& of, const MetalConstants& constants, const T& plastic_strain, const T& temperature) noexcept
+  SlowStrength(const JohnsonCookMetal& of, const JohnsonCookConstants& constants, const T& plastic_strain, const T& temperature) noexcept
       : metal(of),
         c(constants),
         hardening(plastic_strain, constants.hardening),
@@ -72,7 +72,7 @@ struct PlasticFlow {
 template <class T>
 struct JohnsonCookReturn {
   const JohnsonCookMetal& metal;
-  const MetalConstants& c;
+  const JohnsonCookConstants& c;
   SlowStrength<T>& slow;
   Strength<T> start;                      ///< strength before the step
   T J, J_before;                          ///< volume ratios at the end of the step and before
@@ -137,20 +137,7 @@ template SimdReal JohnsonCookDamage::fracture_strain<SimdReal>(const SimdReal&, 
 
 JohnsonCookMetal::Constants JohnsonCookMetal::constants() const noexcept
 {
-  const Moduli elastic = moduli();
-  Constants c{.bulk = elastic.bulk,
-              .shear = elastic.shear,
-              .heat = heat_fraction / (density * specific_heat),
-              .range_inverse = 1 / (melting_temperature - room_temperature),
-              .rate_inverse = 1 / reference_rate,
-              .hardening = hardening_exponent,
-              .softening = thermal_exponent,
-              .curve = {}};
-  if (mie_gruneisen) {
-    c.curve.emplace(*mie_gruneisen, density);
-    c.bulk = c.curve->bulk;
-  }
-  return c;
+  return {metal_constants(), 1 / (melting_temperature - room_temperature), 1 / reference_rate, hardening_exponent, thermal_exponent};
 }
 
 Real JohnsonCookMetal::flow_stress(Real plastic_strain, Real plastic_rate, Real temperature) const noexcept
@@ -196,11 +183,16 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
     pressure = step->pressure(*c.curve, compression);
   }
 
-  if (const auto flowing = flow.strain > 0; damage && memory.keeps_damage && any_of(flowing)) {
+  if (const auto flowing = flow.strain > 0; damage && memory.kept != DamageKept::no && any_of(flowing)) {
     const T triaxiality = -pressure / above_nothing(flow.mises);
     const T strain = damage->fracture_strain<T>(triaxiality, relative * flow.strain, homologous(*this, memory.temperature, c));
-    memory.damage = where(flowing, min(T(memory.damage + flow.strain / strain), T(1)), memory.damage);
+    if (memory.kept == DamageKept::averaged)
+      memory.local_damage += where(flowing, flow.strain / strain, 0);
+    else
+      memory.damage = where(flowing, min(T(memory.damage + flow.strain / strain), T(1)), memory.damage);
   }
+  if (memory.kept == DamageKept::averaged)  // what has failed does not heal where the mean falls
+    memory.damage = max(memory.damage, min(memory.mean_damage, T(1)));
   if (const auto failed = memory.damage >= 1; any_of(failed)) {
     const auto released = [&](const T& cauchy, Real modulus) -> T { return J * cauchy * J * cauchy / (2 * modulus); };
     const T all = released(flow.mises, 3 * c.shear) + released(min(pressure, T(0)), c.bulk);
@@ -219,23 +211,6 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
 template std::optional<Mat3> JohnsonCookMetal::update(const Increment&, Memory<Real>&, const Constants&) const noexcept;
 template std::optional<Mat3Of<SimdReal>> JohnsonCookMetal::update(const IncrementOf<SimdReal>&, Memory<SimdReal>&,
                                                                   const Constants&) const noexcept;
-
-void JohnsonCookMetal::prestress(const Mat3& stress, Sym3& elastic_left) const noexcept
-{
-  const Constants c = constants();
-  const Real pressure = -stress.trace() / 3;
-  const Real volume_strain = c.curve ? std::log1p(-c.curve->compression_at(pressure)) : -pressure / c.bulk;
-  elastic_left = elastic_left_of(dev(stress), c.shear, volume_strain);
-}
-
-template <class T>
-T JohnsonCookMetal::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
-{
-  using std::sqrt;
-  return sqrt(T(wave_modulus<T>(F.determinant(), c.bulk, c.shear, c.curve) / density));
-}
-template Real JohnsonCookMetal::wave_speed(const Mat3&, const Constants&) const noexcept;
-template SimdReal JohnsonCookMetal::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 void JohnsonCookMetal::check(std::vector<std::string>& problems) const
 {

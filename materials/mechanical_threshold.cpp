@@ -165,24 +165,15 @@ struct ThresholdReturn {
 
 ThresholdMetal::Constants ThresholdMetal::constants() const noexcept
 {
-  const Moduli elastic = moduli();
   const IntrinsicBarrier inner = intrinsic.value_or(IntrinsicBarrier{0, 1, 1, 1, 1});
   const Real cosh = std::cosh(hardening_shape);
-  Constants c{.bulk = elastic.bulk,
-              .shear = elastic.shear,
-              .heat = heat_fraction / (density * specific_heat),
-              .evolving = {1 / activation_energy, std::log(activation_rate), 1 / activation_p, 1 / activation_q},
-              .intrinsic = {1 / inner.activation_energy, std::log(inner.activation_rate), 1 / inner.activation_p, 1 / inner.activation_q},
-              .intrinsic_threshold = inner.threshold,
-              .log_saturation_rate = std::log(saturation_rate),
-              .tanh_shape = std::tanh(hardening_shape),
-              .inverse_cosh_2 = 1 / (cosh * cosh),
-              .curve = {}};
-  if (mie_gruneisen) {
-    c.curve.emplace(*mie_gruneisen, density);
-    c.bulk = c.curve->bulk;
-  }
-  return c;
+  return {metal_constants(),
+          {1 / activation_energy, std::log(activation_rate), 1 / activation_p, 1 / activation_q},
+          {1 / inner.activation_energy, std::log(inner.activation_rate), 1 / inner.activation_p, 1 / inner.activation_q},
+          inner.threshold,
+          std::log(saturation_rate),
+          std::tanh(hardening_shape),
+          1 / (cosh * cosh)};
 }
 
 void ThresholdMetal::divide_strength(Real factor) noexcept
@@ -247,23 +238,6 @@ std::optional<Mat3Of<T>> ThresholdMetal::update(const IncrementOf<T>& in, Memory
 template std::optional<Mat3> ThresholdMetal::update(const Increment&, Memory<Real>&, const Constants&) const noexcept;
 template std::optional<Mat3Of<SimdReal>> ThresholdMetal::update(const IncrementOf<SimdReal>&, Memory<SimdReal>&,
                                                                 const Constants&) const noexcept;
-
-void ThresholdMetal::prestress(const Mat3& stress, Sym3& elastic_left) const noexcept
-{
-  const Constants c = constants();
-  const Real pressure = -stress.trace() / 3;
-  const Real volume_strain = c.curve ? std::log1p(-c.curve->compression_at(pressure)) : -pressure / c.bulk;
-  elastic_left = elastic_left_of(dev(stress), c.shear, volume_strain);
-}
-
-template <class T>
-T ThresholdMetal::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
-{
-  using std::sqrt;
-  return sqrt(T(wave_modulus<T>(F.determinant(), c.bulk, c.shear, c.curve) / density));
-}
-template Real ThresholdMetal::wave_speed(const Mat3&, const Constants&) const noexcept;
-template SimdReal ThresholdMetal::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 void ThresholdMetal::check(std::vector<std::string>& problems) const
 {

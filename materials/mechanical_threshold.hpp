@@ -6,9 +6,8 @@
 #include <variant>
 
 #include "core/type_list.hpp"
-#include "materials/parts/elasticity.hpp"
-#include "materials/parts/equation_of_state.hpp"
 #include "materials/parts/law.hpp"
+#include "materials/parts/metal.hpp"
 
 namespace talus {
 
@@ -28,29 +27,24 @@ struct IntrinsicBarrier {
 };
 
 /// Parameters and formulas that the two variants of the law have in common.  Formulas and numbers: docs/reference/materials.md.
-struct ThresholdMetal : Elasticity {
-  Real density{}, athermal_stress{};
+struct ThresholdMetal : Metal {
+  Real athermal_stress{};
   Real shear_at_zero_kelvin{}, shear_loss{}, shear_temperature{}, boltzmann_over_burgers_cubed{};
   Real activation_energy{}, activation_rate{}, activation_p{}, activation_q{};
   Real hardening_modulus{}, hardening_by_log_rate = 0, hardening_by_root_rate = 0, hardening_by_temperature = 0, hardening_shape{};
   Real saturation_stress{}, saturation_energy{}, saturation_rate{}, initial_threshold = 0;
-  Real specific_heat{}, heat_fraction = 0.9, initial_temperature{};
-  std::optional<Real> conductivity;
+  Real initial_temperature{};
   std::optional<IntrinsicBarrier> intrinsic;
-  std::optional<MieGruneisen> mie_gruneisen;
 
   /// S = [1 - (k T / (g_0 mu b^3) ln(rate_0 / rate))^(1/q)]^(1/p), the share of a threshold that is left at a rate and a temperature.
   struct Barrier {
     Real energy_inverse, log_rate, p_inverse, q_inverse;
   };
-  struct Constants {
-    Real bulk, shear;                 ///< Pa; the bulk modulus is used where there is no equation of state
-    Real heat;                        ///< heat_fraction / (density specific_heat) [K m^3/J]
+  struct Constants : MetalConstants {
     Barrier evolving, intrinsic;      ///< the second is of no meaning without a threshold
     Real intrinsic_threshold;         ///< sigma_i [Pa], or 0
     Real log_saturation_rate;         ///< [ln 1/s]
     Real tanh_shape, inverse_cosh_2;  ///< tanh(a) and 1 / cosh(a)^2 of the shape a of hardening
-    std::optional<MieGruneisenCurve> curve;
   };
   Constants constants() const noexcept;
   void check(std::vector<std::string>& problems) const;
@@ -62,10 +56,6 @@ struct ThresholdMetal : Elasticity {
   Real flow_stress(Real threshold_ratio, Real plastic_rate, Real temperature) const noexcept;
   /// The strength without the help of heat [Pa]: that at rates from activation_rate on.
   Real threshold(Real threshold_ratio, Real temperature) const noexcept;
-  template <class T>
-  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
-  /// The diffusivity of heat [m^2/s].
-  Real diffusivity(const Constants&) const noexcept { return conductivity ? *conductivity / (density * specific_heat) : 0; }
 
  protected:
   /// The temperature in a history [K]; that of the parameters if the history has none.
@@ -84,15 +74,7 @@ struct ThresholdMetal : Elasticity {
   /// Returns nothing, and changes no history, if the law has no solution in some lane.
   template <class T>
   std::optional<Mat3Of<T>> update(const IncrementOf<T>& in, Memory<T>& memory, const Constants& c) const noexcept;
-  void prestress(const Mat3& stress, Sym3& elastic_left) const noexcept;
 };
-
-template <bool with_energy>
-struct ThresholdEnergy {
-  Real internal_energy = 0;
-};
-template <>
-struct ThresholdEnergy<false> {};
 
 /// The mechanical threshold stress of Follansbee & Kocks on logarithmic elasticity, with the return by backward Euler.  The Cauchy stress
 /// yields where
@@ -111,7 +93,7 @@ struct MechanicalThresholdOf : ThresholdMetal {
   {
     using Law = MechanicalThresholdOf;
     return std::tuple_cat(
-        std::tuple{required<Law, Real>("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
+        elastic_metal_fields<Law>(),
         std::tuple{
             required<Law, Real>("athermal_stress", &Law::athermal_stress, non_negative, "Pa",
                                 "sigma_a, strength that heat and rate do not change: grain boundaries"),
@@ -140,41 +122,20 @@ struct MechanicalThresholdOf : ThresholdMetal {
             required<Law, Real>("saturation_stress", &Law::saturation_stress, positive, "Pa", "sigma_es0, where sigma_e saturates at 0 K"),
             required<Law, Real>("saturation_energy", &Law::saturation_energy, positive, "-", "g_0es of the saturation, over mu b^3"),
             required<Law, Real>("saturation_rate", &Law::saturation_rate, positive, "1/s", "rate at which sigma_e saturates at sigma_es0"),
-            optional<Law, Real>("initial_threshold", &Law::initial_threshold, non_negative, "Pa", "sigma_e at the start: 0 if annealed"),
-            required<Law, Real>("specific_heat", &Law::specific_heat, positive, "J/(kg K)", "heat by mass and temperature"),
-            optional<Law, Real>("heat_fraction", &Law::heat_fraction, within(0, 1), "-", "share of the plastic work that heats"),
-            required<Law, Real>("initial_temperature", &Law::initial_temperature, positive, "K", "temperature at the start"),
-            optional<Law, std::optional<Real>>("conductivity", &Law::conductivity, positive, "W/(m K)",
-                                               "thermal conductivity; without it no heat flows between particles"),
-            group<Law, std::optional<MieGruneisen>>("mie_gruneisen", &Law::mie_gruneisen,
-                                                    "pressure of strong compression, instead of the bulk modulus")});
+            optional<Law, Real>("initial_threshold", &Law::initial_threshold, non_negative, "Pa", "sigma_e at the start: 0 if annealed")},
+        heating_fields<Law>(),
+        std::tuple{required<Law, Real>("initial_temperature", &Law::initial_temperature, positive, "K", "temperature at the start")},
+        conductivity_field<Law>(), mie_gruneisen_field<Law>());
   }
 
-  struct State : ThresholdEnergy<with_energy> {
-    Sym3 elastic_left = Sym3::Zero();
-    Real plastic_strain = 0, plastic_work = 0;
-    Real temperature = 0;  ///< 0 before the first step: then this and the threshold are those of the parameters
+  struct State : EnergyHistory<with_energy>, MetalState {
     Real threshold_ratio = 0;
     static constexpr auto fields()
     {
-      return std::tuple_cat(
-          std::tuple{
-              history("elastic_left", &State::elastic_left, "-", "elastic left Cauchy-Green tensor minus identity: xx, yy, zz, xy, yz, xz"),
-              history("plastic_strain", &State::plastic_strain, "-", "p, accumulated plastic strain, integral of sqrt(2/3 e:e)"),
-              history("plastic_work", &State::plastic_work, "J/m^3", "dissipated energy per initial volume"),
-              history("temperature", &State::temperature, "K", "of the particle: its start and what plastic work has heated"),
-              history("threshold_ratio", &State::threshold_ratio, "-", "sigma_e, the threshold that evolves, over saturation_stress")},
-          energy_field());
-    }
-
-   private:
-    static constexpr auto energy_field()
-    {
-      if constexpr (with_energy)
-        return std::tuple{history<State, Real>("internal_energy", &State::internal_energy, "J/m^3",
-                                               "work of stress and artificial viscosity per initial volume")};
-      else
-        return std::tuple{};
+      return std::tuple_cat(metal_history<State>(),
+                            std::tuple{history("threshold_ratio", &State::threshold_ratio, "-",
+                                               "sigma_e, the threshold that evolves, over saturation_stress")},
+                            energy_history<State>());
     }
   };
 
@@ -210,7 +171,6 @@ struct MechanicalThresholdOf : ThresholdMetal {
       put(state, &State::internal_energy, memory.energy);
     return *stress;
   }
-  void prestress(const Mat3& stress, State& state) const noexcept { ThresholdMetal::prestress(stress, state.elastic_left); }
   /// sqrt(3 J2) minus the strength without the help of heat [Pa]: flow at any rate is below it.
   Real yield(const Mat3& stress, const State& state) const noexcept
   {

@@ -20,11 +20,11 @@ struct HeatConduction {
   int temperature;     ///< its number in the history of a particle
 };
 
-/// Averaging of a plastic strain over a length of the material, see softening_length.hpp.
+/// Averaging of a plastic strain, or of the damage that it does, over a length of the material: see softening_length.hpp and johnson_cook.hpp.
 struct StrainAveraging {
   Real length;             ///< [m]
-  Real band;               ///< width of a shear band [m]
-  Real largest;            ///< strain that counts at most [-]
+  Real band;               ///< width of a shear band, or of the layer that a crack stands for [m]
+  Real largest;            ///< strain or damage that counts at most [-]
   int strain, mean, rate;  ///< their numbers in the history of a particle
 };
 

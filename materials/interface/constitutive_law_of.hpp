@@ -28,7 +28,7 @@ auto variables_of()
   });
   return all;
 }
-/// Particles i to i + 3 of the strip, or those up to its end.  L is final, and answers for several particles at once.
+/// Particles i to i + 3 of the strip, or those up to its end.  L is final; of_particles() answers for several particles at once.
 template <int D, class L>
 [[gnu::flatten]] void update_pack(const L& law, const Material& material, const StressStrip<D>& strip, std::size_t i,
                                   StressLanes& sums) noexcept
@@ -44,9 +44,10 @@ template <int D, class L>
   if (material.averages_volume)
     average_volume(strip, i, J, F_of_law, L_of_law);
   StateLanes<typename L::State> states{strip.history.first + i, strip.history.stride, lanes_of(strip, i)};
-  const SimdReal speed_of_waves = law.wave_speed(F_of_law, states);
+  const auto& of_particles = law.of_particles(states);
+  const SimdReal speed_of_waves = of_particles.wave_speed(F_of_law, states);
   const auto [viscous, pore] = find_pressures(material, strip, i, shrinking, speed_of_waves, stress_of_law);
-  Mat3Of<SimdReal> after = law.update({F_of_law, L_of_law, stress_of_law, strip.dt, viscous, strip.elastic}, states);
+  Mat3Of<SimdReal> after = of_particles.update({F_of_law, L_of_law, stress_of_law, strip.dt, viscous, strip.elastic}, states);
   after.diagonal().array() -= viscous + pore;
 
   const Sym3Of<SimdReal> stress = talus::pack(after);
@@ -131,6 +132,9 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
       state_of(history) = {};
   }
 
+  /// What answers for the particles of several lanes: the law itself, the same for all.
+  const ConstitutiveLawOf& of_particles(const StateLanes<State>&) const noexcept { return *this; }
+
   Mat3 update(const Increment& step, Real* history) const noexcept override { return law_.update(step, state_of(history), constants_); }
   /// Of several particles, one per lane; lanes beyond `count` repeat the last one.  Where the law is not written for lanes, one after the
   /// other.
@@ -201,15 +205,17 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   }
   std::optional<StrainAveraging> strain_averaging() const noexcept override
   {
-    if constexpr (requires { law_.averaging_length(); })
+    if constexpr (requires { law_.averaging_length(); }) {
+      constexpr AveragedHistory<State> numbers = L::averaged_history();
       return StrainAveraging{.length = law_.averaging_length(),
                              .band = law_.band_width(),
                              .largest = law_.largest_averaged(),
-                             .strain = place_in_state<State>(&State::plastic_strain),
-                             .mean = place_in_state<State>(&State::mean_plastic_strain),
-                             .rate = place_in_state<State>(&State::mean_plastic_rate)};
-    else
+                             .strain = place_in_state<State>(numbers.local),
+                             .mean = place_in_state<State>(numbers.mean),
+                             .rate = place_in_state<State>(numbers.rate)};
+    } else {
       return std::nullopt;
+    }
   }
 
  private:

@@ -52,6 +52,55 @@ class VariedLawOf final : public VariedLaw {
  public:
   using State = typename L::State;
 
+  /// The law of one particle.
+  struct OfParticle {
+    L law;
+    typename L::Constants constants;
+
+    explicit OfParticle(const L& of) noexcept : law(of), constants(of.constants()) {}
+    Real wave_speed(const Mat3& F, const State& state) const noexcept
+    {
+      if constexpr (requires { law.wave_speed(F, state, constants); })
+        return law.wave_speed(F, state, constants);
+      else
+        return law.wave_speed(F, constants);
+    }
+  };
+  /// The laws of several particles, one per lane.  Nothing is inlined, so that a law is compiled once for all dimensions.
+  class OfParticles {
+   public:
+    [[gnu::noinline]] OfParticles(const VariedLawOf& of, const StateLanes<State>& states) noexcept
+    {
+      for (int lane = 0; lane < states.count; ++lane)
+        lanes_[static_cast<std::size_t>(lane)].emplace(of.of_particle(states.number(width) + lane, states.stride));
+    }
+    [[gnu::noinline]] SimdReal wave_speed(const Mat3Of<SimdReal>& F, const StateLanes<State>& states) const noexcept
+    {
+      SimdReal speed = 1;
+      for (int lane = 0; lane < states.count; ++lane)
+        speed.set(lane, lanes_[static_cast<std::size_t>(lane)]->wave_speed(lane_of(F, lane), states.of(lane)));
+      return speed;
+    }
+    [[gnu::noinline]] Mat3Of<SimdReal> update(const IncrementOf<SimdReal>& in, StateLanes<State>& states) const noexcept
+    {
+      Mat3Of<SimdReal> stress = Mat3Of<SimdReal>::Zero();
+      for (int lane = 0; lane < states.count; ++lane) {
+        const OfParticle& particle = *lanes_[static_cast<std::size_t>(lane)];
+        const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
+        State state = states.of(lane);
+        const Increment one{F, rate, before, in.dt, in.viscous[lane], in.elastic, nullptr, in.time};
+        const Mat3 after = particle.law.update(one, state, particle.constants);
+        states.set(lane, state);
+        for (Index k = 0; k < 9; ++k)
+          stress(k).set(lane, after(k));
+      }
+      return stress;
+    }
+
+   private:
+    std::array<std::optional<OfParticle>, pack_size> lanes_;
+  };
+
   VariedLawOf(const L& law, const LawDescription& description, const std::vector<PlaceOfNumber>& varied,
               std::vector<ParameterVariation> variation)
       : VariedLaw(description, numbers(varied), std::move(variation)), mean_(law), places_(varied)
@@ -69,21 +118,15 @@ class VariedLawOf final : public VariedLaw {
     const L law = of_particle(history + width, 1);
     return law.update(step, ConstitutiveLawOf<L>::state_of(history), law.constants());
   }
-  // Not inlined, so that a law is compiled once for all dimensions.
-  [[gnu::noinline]] Mat3Of<SimdReal> update(const IncrementOf<SimdReal>& in, StateLanes<State>& states) const noexcept
+  /// What answers for the particles of several lanes: their laws and the constants of these, worked out once per step.
+  OfParticles of_particles(const StateLanes<State>& states) const noexcept { return OfParticles(*this, states); }
+  SimdReal wave_speed(const Mat3Of<SimdReal>& F, const StateLanes<State>& states) const noexcept
   {
-    Mat3Of<SimdReal> stress = Mat3Of<SimdReal>::Zero();
-    for (int lane = 0; lane < states.count; ++lane) {
-      const L law = of_particle(states.number(width) + lane, states.stride);
-      const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
-      State state = states.of(lane);
-      const Mat3 after =
-          law.update(Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic, nullptr, in.time}, state, law.constants());
-      states.set(lane, state);
-      for (Index k = 0; k < 9; ++k)
-        stress(k).set(lane, after(k));
-    }
-    return stress;
+    return of_particles(states).wave_speed(F, states);
+  }
+  Mat3Of<SimdReal> update(const IncrementOf<SimdReal>& in, StateLanes<State>& states) const noexcept
+  {
+    return of_particles(states).update(in, states);
   }
   StressSums update_stress(const Material& material, const StressStrip<2>& strip) const noexcept override
   {
@@ -97,14 +140,7 @@ class VariedLawOf final : public VariedLaw {
   Real wave_speed(const Mat3& F) const noexcept override { return mean_.wave_speed(F); }
   Real wave_speed(const Mat3& F, const Real* history) const noexcept override
   {
-    return wave_speed(of_particle(history + width, 1), F, ConstitutiveLawOf<L>::state_of(history));
-  }
-  [[gnu::noinline]] SimdReal wave_speed(const Mat3Of<SimdReal>& F, const StateLanes<State>& states) const noexcept
-  {
-    SimdReal speed = 1;
-    for (int lane = 0; lane < states.count; ++lane)
-      speed.set(lane, wave_speed(of_particle(states.number(width) + lane, states.stride), lane_of(F, lane), states.of(lane)));
-    return speed;
+    return OfParticle(of_particle(history + width, 1)).wave_speed(F, ConstitutiveLawOf<L>::state_of(history));
   }
   std::optional<Real> diffusivity() const noexcept override { return mean_.diffusivity(); }
 
@@ -175,15 +211,6 @@ class VariedLawOf final : public VariedLaw {
       divide_strength(law, divided_by_);
     return law;
   }
-  static Real wave_speed(const L& law, const Mat3& F, const State& state) noexcept
-  {
-    const auto constants = law.constants();
-    if constexpr (requires { law.wave_speed(F, state, constants); })
-      return law.wave_speed(F, state, constants);
-    else
-      return law.wave_speed(F, constants);
-  }
-
   ConstitutiveLawOf<L> mean_;
   std::vector<PlaceOfNumber> places_;
   Real divided_by_ = 1;  ///< the strength, after the factors

@@ -95,6 +95,14 @@ int place_in_state(Value Owner::*member) noexcept
   return static_cast<int>(bytes / static_cast<std::ptrdiff_t>(sizeof(Real)));
 }
 
+/// Numbers of a history, one of which is averaged over a length: itself, its mean and the rate of the mean.
+template <class State>
+struct AveragedHistory {
+  Real State::*local;
+  Real State::*mean;
+  Real State::*rate;
+};
+
 /// One variable of a history, for a law that is written once for Real and SimdReal.
 template <class State, class Owner>
 Real get(const State& state, Real Owner::*member) noexcept

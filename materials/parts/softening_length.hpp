@@ -55,6 +55,10 @@ struct WithSofteningLength : L {
     return L::yield(stress, state, softened(state.plastic_strain, state.mean_plastic_strain));
   }
 
+  static constexpr AveragedHistory<State> averaged_history() noexcept
+  {
+    return {&State::plastic_strain, &State::mean_plastic_strain, &State::mean_plastic_rate};
+  }
   /// The length a of the average [m].
   Real averaging_length() const noexcept { return 4 * *L::softening_length / 3; }
   /// The width of a shear band while the strength falls [m].

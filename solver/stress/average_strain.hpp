@@ -1,12 +1,13 @@
 #pragma once
-// Plastic strain averaged over a length of the material, after which strength softens: see materials/parts/softening_length.hpp.
+// Plastic strain or damage averaged over a length of the material, after which strength softens or ends: see materials/parts/softening_length.hpp
+// and materials/johnson_cook.hpp.
 #include "core/types.hpp"
 #include "materials/interface/material.hpp"
 #include "solver/stress/node_patch_sums.hpp"
 
 namespace talus {
 
-/// Bodies of one material whose plastic strain p is averaged as if they were one, and the sums over them.
+/// Bodies of one material whose plastic strain p, or the damage that it does, is averaged as if they were one, and the sums over them.
 ///
 /// The mean m of  m - a^2 lap m = p  is approached in time by
 ///     m'' + 2 w m' = w^2 (p - m + a^2 lap m),    w = c / a,

@@ -40,10 +40,10 @@ void warn_of_coarse_cells(const Scene& scene, const Mesh<D>& mesh, const Particl
     ranks.sum(edges);
     const Real edge = edges.value() / static_cast<Real>(count);
     if (count > 0 && averaging->band < cells_of_a_band * edge)
-      warnings.push_back(
-          fmt::format("{}: body \"{}\" has cells of {:.3g} m where shear bands are {:.3g} m wide by its softening_length: they need six "
-                      "cells or more to be as wide on any mesh; take cells of at most {:.3g} m where it shears",
-                      to_string(scene.bodies[body].where), bodies[body].name, edge, averaging->band, averaging->band / cells_of_a_band));
+      warnings.push_back(fmt::format(
+          "{}: body \"{}\" has cells of {:.3g} m where bands of failure are {:.3g} m wide by its softening_length: they need six "
+          "cells or more to be as wide on any mesh; take cells of at most {:.3g} m where it fails",
+          to_string(scene.bodies[body].where), bodies[body].name, edge, averaging->band, averaging->band / cells_of_a_band));
   }
 }
 

@@ -85,7 +85,7 @@ time: {{end: 1}}
   write("fine.yaml", scene(0.3));
   EXPECT_THAT(
       talus("check coarse.yaml").err,
-      HasSubstr("coarse.yaml:8:5: body \"slope\" has cells of 0.285 m where shear bands are 1.26 m wide by its softening_length: they "
+      HasSubstr("coarse.yaml:8:5: body \"slope\" has cells of 0.285 m where bands of failure are 1.26 m wide by its softening_length: they "
                 "need six cells or more to be as wide on any mesh; take cells of at most 0.209 m"));
   EXPECT_THAT(talus("check fine.yaml").err, testing::Not(HasSubstr("softening_length")));
 }
