@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "app/setup/checks/kernel_choice.hpp"
 #include "io/scene/reader.hpp"
 #include "tests/app/program.hpp"
@@ -82,8 +85,8 @@ TEST(KernelChoice, FlipAndContactsAreNamedWhereBodiesMeet)
 
 TEST(KernelChoice, BendingIsNamedWhereTheSurfaceOfASlenderBodyCutsCells)
 {
-  const auto shaped = [](const std::string& more, const std::string& reference = "") {
-    return blocks(more, "region: left", "shape: {type: box, low: [1.1, 0], high: [1.3, 0.9]}" + reference);
+  const auto shaped = [](const std::string& more) {
+    return blocks(more, "region: left", "shape: {type: box, low: [1.1, 0], high: [1.3, 0.9]}");
   };
   const KernelUse beam{.moves = true, .slenderness = {1, 4.5}}, block{.moves = true, .slenderness = {1, 3}};
   EXPECT_THAT(advice(shaped(gravity), beam), ElementsAre(AllOf(HasSubstr("body \"two\" cuts cells"), HasSubstr("exact_force"))));
@@ -91,9 +94,34 @@ TEST(KernelChoice, BendingIsNamedWhereTheSurfaceOfASlenderBodyCutsCells)
   EXPECT_THAT(advice(shaped(gravity), KernelUse{.flows = true, .moves = true, .slenderness = {1, 4.5}}), IsEmpty());
   EXPECT_THAT(advice(shaped(gravity), KernelUse{.moves = true, .slenderness = {4.5, 1}}), IsEmpty()) << "the mesh follows the first";
   EXPECT_THAT(advice(shaped(""), beam), IsEmpty()) << "nothing bends it";
-  EXPECT_THAT(advice(shaped(gravity, ", reference: {update: never}"), beam), IsEmpty());
   EXPECT_THAT(advice(shaped(gravity + "projected: {surfaces: extended}\n"), beam), IsEmpty());
+  EXPECT_THAT(advice(block_scene(gravity + "time: {end: 1}\n"), KernelUse{.moves = true, .slenderness = {5}}),
+              ElementsAre(HasSubstr("body \"block\"")));
+  EXPECT_THAT(
+      advice(block_scene(gravity + "time: {end: 1}\n", ", reference: {update: never}"), KernelUse{.moves = true, .slenderness = {5}}),
+      IsEmpty());
   EXPECT_THAT(advice(shaped(gravity + "kernel: umls\numls: {gradient: exact_force}\n"), beam), IsEmpty());
+}
+
+TEST(KernelChoice, SlendernessIsLengthOverThicknessInAnyDirection)
+{
+  Particles<2> particles;
+  const auto add_grid = [&](int along, int across, Real angle) {
+    for (int i = 0; i < along; ++i)
+      for (int j = 0; j < across; ++j)
+        particles.x.push_back(Eigen::Rotation2D<Real>(angle) * Vec<2>(i, j) + Vec<2>(100, -7));
+  };
+  add_grid(40, 10, 0.6);
+  add_grid(10, 10, 0.3);
+  std::vector<Body> bodies(3);
+  bodies[0].begin = 0, bodies[0].end = 400;
+  bodies[1].begin = 400, bodies[1].end = 500;
+  bodies[2].begin = bodies[2].end = 500;
+  const std::vector<Real> found = slenderness(particles, bodies);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_NEAR(found[0], std::sqrt((40.0 * 40 - 1) / (10.0 * 10 - 1)), 1e-9) << "variances of evenly spaced points";
+  EXPECT_NEAR(found[1], 1, 1e-6);
+  EXPECT_EQ(found[2], 1);
 }
 
 class KernelChoiceOfProgram : public Program {};
