@@ -100,7 +100,8 @@ std::vector<std::string> advice_on_kernel(const Scene& scene, const KernelUse& u
   if (!use.flows && use.moves && bodies_may_meet(scene)) {
     if (transfer.scheme == Scheme::aflip)
       advice.emplace_back(
-          "aflip loses energy where bodies meet (benchmarks/colliding_disks: 6 to 12 %, flip 0.4 to 0.9 %); if they are to bounce, take "
+          "aflip damps the vibration that an impact leaves (benchmarks/colliding_disks: 6 to 12 % of the energy, flip 0.4 to 0.9 %); if it "
+          "matters, take "
           "transfer: {scheme: flip}");
     if (scene.contacts.empty())
       advice.emplace_back(
