@@ -48,7 +48,7 @@ def draw(figure, runs, curve):
         axis.plot(run.history["time"], run.history["tip_uy"], label=f"talus, {size}")
     axis.plot(curve["time"], curve["uy"], "ko", markersize=4, fillstyle="none", label="finite elements")
     axis.set(xlabel="time [s]", ylabel="vertical displacement of the tip [m]")
-    axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncol=len(runs) + 1)
+    axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncol=2, fontsize=7)
 
 
 def judge(name, size, run, curve, data):
