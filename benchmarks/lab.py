@@ -36,6 +36,9 @@ METHODS = {  # for sweeps, the default first; linear with tpic inverts particles
     f"{kernel}, {scheme}": {"kernel": kernel, "transfer.scheme": scheme}
     for kernel, scheme in (("projected", "aflip"), ("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))}
 METHODS["umls, exact_force, aflip"] = {"kernel": "umls", "umls.gradient": "exact_force", "transfer.scheme": "aflip"}
+CHOICES = METHODS | {  # and those that sweeps leave out
+    "projected, flip": {"kernel": "projected", "transfer.scheme": "flip"},
+    "projected, extended, aflip": {"kernel": "projected", "projected.surfaces": "extended", "transfer.scheme": "aflip"}}
 SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> suitable transfer
 OTHER_KERNELS = {"umls": "aflip", "linear": "flip"}  # beside the default, with their transfer: linear with aflip inverts particles where bodies meet
 OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme"}  # option of the command line -> key of the scene

@@ -1,12 +1,14 @@
 // The commands talus check, and talus run --dry-run.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/commands/check_command.hpp"
 #include "app/commands/run_command.hpp"
 #include "app/run/cost_estimate.hpp"
 #include "app/run/thread_choice.hpp"
+#include "app/setup/checks/kernel_choice.hpp"
 #include "app/setup/quick.hpp"
 #include "app/setup/water_table.hpp"
 #include "core/display_text.hpp"
@@ -149,6 +151,20 @@ std::string describe_mesh(const Scene& scene, const StarOffsets<D>& offsets)
   return text;
 }
 
+/// A line for each kernel or transfer that suits better what the scene does.
+template <int D>
+std::string describe_advice(const Scene& scene, const Setup<D>& setup, const StarOffsets<D>& offsets)
+{
+  const KernelUse use{.flows = any_flows(setup.state.materials, setup.laws),
+                      .moves = !std::ranges::all_of(setup.stages, &Stage::seeks_rest),
+                      .uneven_mesh = offsets.median,
+                      .slenderness = slenderness(setup.state.particles, setup.state.bodies)};
+  std::string text;
+  for (const std::string& line : advice_on_kernel(scene, use))
+    text += "  advice: " + line + "\n";
+  return text;
+}
+
 enum class Times : std::uint8_t { left_out, measured };
 
 /// Prints the errors of a scene and the cost of its run.
@@ -171,6 +187,7 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   const std::string transfer = describe(setup.conditions.transfer);
   const std::string terrain = terrain_in_words(mesh, "  ");
   const StarOffsets<D> offsets = star_offsets(mesh);
+  const std::string advice = describe_advice(scene, setup, offsets);
   std::string bodies;
   for (std::size_t b = 0; b < setup.state.bodies.size(); ++b)
     if (const Body& body = setup.state.bodies[b]; presence_of(body.name, scene.stages).from == 0)
@@ -186,8 +203,8 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   for (const std::vector<std::string>& some : {warnings, warnings_of(cost.shared_nodes, names)})
     for (const std::string& warning : some)
       fmt::print(stderr, "warning: {}\n", warning);
-  fmt::print("{}\n  {}-D, kernel {}, transfer {}, {} cells, {} nodes, {} particles\n{}{}{}", scene.title, D, scene.kernel, transfer, cells,
-             nodes, particles, describe_mesh(scene, offsets), terrain, bodies);
+  fmt::print("{}\n  {}-D, kernel {}, transfer {}, {} cells, {} nodes, {} particles\n{}{}{}{}", scene.title, D, scene.kernel, transfer,
+             cells, nodes, particles, describe_mesh(scene, offsets), advice, terrain, bodies);
   if (const std::string contacts = contacts_in_words(cost.shared_nodes, names); !contacts.empty())
     fmt::print("  {}\n", contacts);
   if (cost.nodes_as_corners > 0)

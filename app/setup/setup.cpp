@@ -8,6 +8,7 @@
 #include "app/observers/runout.hpp"
 #include "app/setup/body_options.hpp"
 #include "app/setup/boundaries_of_scene.hpp"
+#include "app/setup/checks/kernel_choice.hpp"
 #include "app/setup/checks/softening_cells.hpp"
 #include "app/setup/checks/thin_layers.hpp"
 #include "app/setup/contacts_of_scene.hpp"
@@ -226,15 +227,6 @@ Real fall_time(const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Real 
   return std::sqrt(*median / gravity);
 }
 
-/// Whether a body has a law that dissipates, in any stage.
-template <int D>
-bool any_body_flows(const Setup<D>& setup)
-{
-  const auto dissipates = [](const Material& one) { return one.law().description().scalar_variable("plastic_work").has_value(); };
-  return std::ranges::any_of(setup.state.materials, dissipates) ||
-         std::ranges::any_of(setup.laws, [&](const auto& of_stage) { return std::ranges::any_of(of_stage, dissipates); });
-}
-
 /// Sections that leave the mesh, walls of the history that have no area.
 template <int D>
 void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, SceneErrorCollector& errors)
@@ -341,8 +333,9 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.conditions.limits = run_limits_of(scene, mesh, setup, ranks);
   set_changes(scene, mesh, ranks, setup);
   const Gravity<D>& gravity = setup.conditions.loads.gravity;
-  setup.conditions.transfer = scene.transfer.with_damping(
-      fall_time(mesh, has_particles, gravity.table.largest_magnitude() * gravity.acceleration.norm()), any_body_flows(setup));
+  setup.conditions.transfer =
+      scene.transfer.with_damping(fall_time(mesh, has_particles, gravity.table.largest_magnitude() * gravity.acceleration.norm()),
+                                  any_flows(setup.state.materials, setup.laws));
   setup.from_files = digest_of_files(scene, setup);
   return setup;
 }

@@ -11,6 +11,7 @@ SOLID = {"quick": [0.35], "full": [0.35, 0.25]}  # of the thick beam in three di
 ANGLES = {"quick": [0, 30, 75], "full": [0, 15, 30, 45, 60, 75, 90]}  # degrees
 OTHER = "projected, aflip"  # the method beside that of the scenes, which takes cells of 0.25 m over 4 s at full level only: they are dear
 OTHER_SIZES = {"quick": [0.5], "full": [0.5, 0.25, 0.125]}
+BENDING = ("umls, exact_force, aflip", "projected, extended, aflip")  # made for bodies that bend; beside the others, of the same sizes
 OTHER_ANGLES = {"quick": [0, 30], "full": [0, 15, 30, 45, 60, 75, 90]}  # of cells of 0.25 m
 FRAMES = 0.025  # s, between the frames of the thick beams
 SWEPT = {"quick": [1, 0.7, 0.5, 0.35], "full": [1, 0.7, 0.5, 0.35, 0.25]}  # for tradeoff()
@@ -47,7 +48,7 @@ def draw(figure, runs, curve):
         axis.plot(run.history["time"], run.history["tip_uy"], label=f"talus, {size}")
     axis.plot(curve["time"], curve["uy"], "ko", markersize=4, fillstyle="none", label="finite elements")
     axis.set(xlabel="time [s]", ylabel="vertical displacement of the tip [m]")
-    axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncol=len(runs) + 1)
+    axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncol=2, fontsize=7)
 
 
 def judge(name, size, run, curve, data):
@@ -161,13 +162,13 @@ def named(size, method):
 
 def started(lab, scene, label, size, method):
     """Starts a scene with the method that it has, or another."""
-    return lab.run(f"{CASE}/{scene}.yaml", f"{label}{size}{'_' + tools.label(method) if method else ''}", {"mesh.size": size, **tools.METHODS.get(method, {})})
+    return lab.run(f"{CASE}/{scene}.yaml", f"{label}{size}{'_' + tools.label(method) if method else ''}", {"mesh.size": size, **tools.CHOICES.get(method, {})})
 
 
 def evaluate(lab):
     """Results for the sizes of the level: the slender beam, the same turned, the thick beam in two and three dimensions."""
     data, curve, published = tools.reference(CASE), tools.reference(CASE, "fe_history.csv"), tools.reference(CASE, "short_history.csv")
-    plan = [*((size, None) for size in SIZES[lab.level]), *((size, OTHER) for size in OTHER_SIZES[lab.level])]
+    plan = [*((size, None) for size in SIZES[lab.level]), *((size, method) for method in (OTHER, *BENDING) for size in OTHER_SIZES[lab.level])]
     runs = {named(size, method): (size, started(lab, "scene", "dx", size, method)) for size, method in plan}
     plan = [*((size, None) for size in SHORT[lab.level]), *((size, OTHER) for size in SHORT[lab.level][:None if lab.level == "full" else 1])]
     short = {named(size, method): started(lab, "scene_short", "short_", size, method) for size, method in plan}

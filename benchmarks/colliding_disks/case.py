@@ -10,9 +10,11 @@ RUNS = {  # name: (kernel, transfer, cell size [m], level)
     "linear, flip": ("linear", "flip", 0.025, "quick"),
     "umls, tpic": ("umls", "tpic", 0.025, "quick"),
     "projected, aflip": ("projected", "aflip", 0.025, "quick"),
+    "projected, flip": ("projected", "flip", 0.025, "quick"),
     "umls, flip, cells of 0.05 m": ("umls", "flip", 0.05, "quick"),
     "linear, flip, cells of 0.05 m": ("linear", "flip", 0.05, "quick"),
     "projected, aflip, cells of 0.05 m": ("projected", "aflip", 0.05, "quick"),
+    "projected, flip, cells of 0.05 m": ("projected", "flip", 0.05, "quick"),
     "umls, flip, cells of 0.0125 m": ("umls", "flip", 0.0125, "full"),
     "linear, flip, cells of 0.0125 m": ("linear", "flip", 0.0125, "full"),
     "projected, aflip, cells of 0.0125 m": ("projected", "aflip", 0.0125, "full")}

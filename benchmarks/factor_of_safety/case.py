@@ -56,7 +56,7 @@ def draw(figure, started):
         if "factor of safety" in slope:
             axes.axvspan(slope["factor of safety"] - slope["tolerance"], slope["factor of safety"] + slope["tolerance"], color="k", alpha=0.1, lw=0)
         axes.set(xlabel="factor F", ylabel="displacement [m]", yscale="log", title=name.split(", ", 1)[0])
-        axes.legend(fontsize=7)
+        axes.legend(fontsize=6, loc="upper center", bbox_to_anchor=(0.5, -0.16))
 
 
 def evaluate(lab):

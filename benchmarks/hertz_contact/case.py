@@ -6,6 +6,7 @@ import lab as tools
 CASE = "hertz_contact"
 SIZES = {"quick": [0.12, 0.06], "full": [0.12, 0.06, 0.03]}  # m, cells at the contact
 JUDGED = "full"  # the level at which the finest mesh has a verdict
+OTHERS = ("projected, aflip", "projected, flip", "umls, exact_force, aflip")  # beside the kernel and transfer of the scene
 TOUCH = 0.01  # of Hertz's largest force: what counts as contact
 
 
@@ -74,10 +75,10 @@ def evaluate(lab):
     """Two or three meshes, refined twice towards the contact."""
     data, sizes = tools.reference(CASE), SIZES[lab.level]
     runs = {size: lab.run(f"{CASE}/scene.yaml", f"dx{size}", refined(size)) for size in sizes}
-    other = "projected, aflip"
-    beside = {size: lab.run(f"{CASE}/scene.yaml", f"projected_dx{size}", {**refined(size), **tools.METHODS[other]}) for size in (sizes if lab.level == "full" else sizes[:1])}
+    beside = {(method, size): lab.run(f"{CASE}/scene.yaml", tools.label(f"{method}_dx{size}"), {**refined(size), **tools.CHOICES[method]})
+              for method in OTHERS for size in (sizes if lab.level == "full" else sizes[:1])}
     lab.convergence(CASE, "error of the largest force", sizes, [abs(measures(runs[size], data)[0] - 1) for size in sizes])
     lab.convergence(CASE, "error of the duration of the contact", sizes, [abs(measures(runs[size], data)[1] - 1) for size in sizes])
     lab.figure(CASE, "verification_hertz", lambda figure: draw(figure, runs, data), caption="Force of a rigid plane on an elastic ball.")
-    named = {f"cells of {size} m": (size, run) for size, run in runs.items()} | {f"cells of {size} m, {other}": (size, run) for size, run in beside.items()}
+    named = {f"cells of {size} m": (size, run) for size, run in runs.items()} | {f"cells of {size} m, {method}": (size, run) for (method, size), run in beside.items()}
     return [result for name, (size, run) in named.items() for result in judge(name, run, data, lab.level == JUDGED and size == sizes[-1])]

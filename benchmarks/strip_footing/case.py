@@ -51,7 +51,7 @@ def evaluate(lab):
     """With averaging of volumes; without, a finer mesh, half the speed and the linear kernel at full level."""
     data, results = tools.reference(CASE), []
     half, strength, capacity, source = (data[key] for key in ("half width [m]", "strength [Pa]", "bearing capacity over strength", "source"))
-    plan = {"averaged": ({}, 0.5, True)}
+    plan = {"averaged": ({}, 0.5, True), "averaged, projected, aflip": (tools.METHODS["projected, aflip"], 0.5, True)}
     if lab.level == "full":
         slow = {"boundaries[0].velocity": [0, -0.015], "boundaries[0].table": [[0, 0], [0.4, 1]], "stages[0].duration": 4.8}
         plan |= {"plain": ({"bodies[0].f_bar": False}, 0.5, False), "averaged, half speed": (slow, 0.5, True), "averaged, linear": ({"kernel": "linear"}, 0.5, False),
