@@ -1,5 +1,6 @@
 #pragma once
 // Softening that does not depend on the mesh: strength follows a plastic strain that is averaged over a length of the material.
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <tuple>
@@ -29,12 +30,13 @@ struct WithSofteningLength : L {
     }
   };
 
-  /// k for a plastic strain and its mean.
+  /// k for a plastic strain and its mean.  The strain counts here as far as it does in the mean: otherwise k would fall, and the strength come
+  /// back, where flow goes on.
   template <class T>
-  static T softened(const T& plastic_strain, const T& mean) noexcept
+  T softened(const T& plastic_strain, const T& mean) const noexcept
   {
-    using std::max;
-    return max(T(2 * mean - plastic_strain), T(0));
+    using std::max, std::min;
+    return max(T(2 * mean - min(plastic_strain, T(largest_averaged()))), T(0));
   }
 
   template <class T>
@@ -65,7 +67,10 @@ struct WithSofteningLength : L {
   Real band_width() const noexcept { return 2 * std::numbers::pi * *L::softening_length; }
   /// What p counts at most in the average: its value in the middle of a band, 1 + sqrt(2) times k, when the softening ends.  Further flow
   /// softens no more material around the band.
-  Real largest_averaged() const noexcept { return (1 + std::numbers::sqrt2) * *L::softening_strain; }
+  Real largest_averaged() const noexcept
+  {
+    return (1 + std::numbers::sqrt2) * L::softening_strain.value_or(std::numeric_limits<Real>::infinity());
+  }
 };
 
 /// A law, or its kind with a softening length where that is given.
