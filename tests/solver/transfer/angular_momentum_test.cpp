@@ -38,7 +38,7 @@ std::vector<Mat<D>> second_moments(const Model<D>& m)
     weights.spell_out(0, plain);
     for (std::size_t a = 0; a < cell.nodes.size(); ++a) {
       const Vec<D> r = mesh.node(cell.nodes[a]) - Vec<D>(p.x[i]);
-      all[to_size(p.id[i])] += plain.w[a] * r * r.transpose();
+      all[static_cast<std::size_t>(p.id[i])] += plain.w[a] * r * r.transpose();
     }
   }
   return all;
@@ -49,7 +49,7 @@ std::vector<Vec<D>> places(const Model<D>& m)
 {
   std::vector<Vec<D>> all(m.state.particles.id.size());
   for (std::size_t i = 0; i < all.size(); ++i)
-    all[to_size(m.state.particles.id[i])] = m.state.particles.x[i];
+    all[static_cast<std::size_t>(m.state.particles.id[i])] = m.state.particles.x[i];
   return all;
 }
 
@@ -65,8 +65,8 @@ Turning<D> turning(const Model<D>& m, const std::vector<Vec<D>>& x, const std::v
   Turning<D> all;
   for (std::size_t i = 0; i < p.id.size(); ++i) {
     const Mat<D> A = p.C.empty() ? Mat<D>(p.L[i]) : Mat<D>(p.C[i]);
-    const Mat<D> plain = p.mass[i] * Vec<D>(p.v[i]) * x[to_size(p.id[i])].transpose();
-    const Mat<D> full = plain + p.mass[i] * A * moments[to_size(p.id[i])];
+    const Mat<D> plain = p.mass[i] * Vec<D>(p.v[i]) * x[static_cast<std::size_t>(p.id[i])].transpose();
+    const Mat<D> full = plain + p.mass[i] * A * moments[static_cast<std::size_t>(p.id[i])];
     all.without += plain - plain.transpose();
     all.with_spin += full - full.transpose();
   }
