@@ -1,4 +1,5 @@
-"""Columns that collapse: aluminium bars against one experiment, granular columns in a channel and round ones against the laws of others."""
+"""Columns that collapse: aluminium bars against one experiment, granular columns in a channel and round ones against the laws of others, and
+those with the rheology mu(I) (inertial.py)."""
 import numpy as np
 from matplotlib.ticker import NullLocator
 
@@ -209,7 +210,7 @@ def draw_channel(figure, runs, data):
 
 def evaluate(lab):
     """Results of the bars with both laws, other kernels and another floor, and of the columns in the channel with two kernels; more variants, taller
-    columns and round ones at full level."""
+    columns, round ones and more of those with mu(I) at full level."""
     data = {**tools.reference(CASE), "surface": tools.reference(CASE, "surface.csv"), "failure": tools.reference(CASE, "failure.csv")}
     runs = {}
     for name, changes in VARIANTS.items():
@@ -219,6 +220,8 @@ def evaluate(lab):
     columns = {ratio: channel(lab, ratio) for ratio in asked}
     besides = {ratio: channel(lab, ratio, "projected, aflip") for ratio in asked}
     rounds = {ratio: quarter(lab, ratio) for ratio in ROUND} if lab.level == "full" else {}
+    inertial = tools.module(CASE, "inertial")
+    inertial_runs = inertial.plan(lab)
     runs = tools.ends(runs)
     lab.figure(CASE, "verification_bars", lambda figure: draw(figure, runs, data), size=(7.6, 3),
                caption="Column of aluminium bars: final surface and line of failure over the experiment of Bui et al. 2008.")
@@ -227,7 +230,8 @@ def evaluate(lab):
     results = [result for name, run in runs.items() for result in judge(name, run, data, name in JUDGED)]
     results += [result for ratio, run in columns.items() for result in judge_channel(f"channel, a = {ratio}", ratio, run, data)]
     results += [result for ratio, run in tools.ends(besides).items() for result in judge_channel(f"channel, a = {ratio}, projected, aflip", ratio, run, data)]
-    return results + [result for ratio, run in tools.ends(rounds).items() for result in judge_round(ratio, run, data)]
+    results += [result for ratio, run in tools.ends(rounds).items() for result in judge_round(ratio, run, data)]
+    return results + inertial.measure(lab, inertial_runs)
 
 
 def tradeoff(lab):

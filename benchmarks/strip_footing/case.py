@@ -48,8 +48,9 @@ def draw(figure, runs, data):
 
 
 def evaluate(lab):
-    """With averaging of volumes; without, a finer mesh, half the speed and the linear kernel at full level."""
-    data, results = tools.reference(CASE), []
+    """With averaging of volumes; without, a finer mesh, half the speed and the linear kernel at full level. And on modified Cam clay (cam_clay.py)."""
+    data, results, cam_clay = tools.reference(CASE), [], tools.module(CASE, "cam_clay")
+    saturated = cam_clay.plan(lab)
     half, strength, capacity, source = (data[key] for key in ("half width [m]", "strength [Pa]", "bearing capacity over strength", "source"))
     plan = {"averaged": ({}, 0.5, True), "averaged, projected, aflip": (tools.METHODS["projected, aflip"], 0.5, True)}
     if lab.level == "full":
@@ -72,4 +73,4 @@ def evaluate(lab):
             tools.Result(CASE, f"scatter of pressure within cells over that of cells, {name}", "-", fields.checkerboard(run.last_frame()), "reported", None, None, "", run)]
     lab.figure(CASE, "verification_footing", lambda figure: draw(figure, runs, data), size=(9.0, 3.4),
                caption="Load on a strip footing over settlement (grey: 5 % about Prandtl's), and plastic strain at the end, volumes averaged.")
-    return results
+    return results + cam_clay.measure(lab, saturated)
