@@ -141,13 +141,17 @@ template <int D>
   return J > 0 && answered;
 }
 
-/// Work of the stress in the step [J]; `before` and `volume_before` are those at its begin.
+/// Work of the stress in the step [J], by the trapezoidal rule; `before` and `volume_before` are those at its begin.  Each of both stresses works
+/// with the velocity gradient about the positions of its time, as the nodal forces that it makes do: L about those at the begin is
+/// L (I + dt L)^-1 about those at the end.  With L twice, stress would work in rotations (docs/theory/time.md).
 template <int D>
 [[gnu::always_inline]] inline SimdReal work_of(const StressStrip<D>& strip, std::size_t i, const MatOf<D>& rate,
                                                const Sym3Of<SimdReal>& before, const SimdReal& volume_before,
                                                const Sym3Of<SimdReal>& stress) noexcept
 {
-  return 0.5 * strip.dt * (volume_before * stress_power<D>(before, rate) + strip.volume.load(i) * stress_power<D>(stress, rate));
+  const MatOf<D> deformation = MatOf<D>::Identity() + SimdReal(strip.dt) * rate, back = deformation.inverse();
+  const MatOf<D> at_end = rate.lazyProduct(back);
+  return 0.5 * strip.dt * (volume_before * stress_power<D>(before, rate) + strip.volume.load(i) * stress_power<D>(stress, at_end));
 }
 
 /// Adds sound particles to what the step reports.
