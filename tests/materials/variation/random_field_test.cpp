@@ -19,7 +19,7 @@ std::vector<Vec3> distances()
   return {{0.5, 0, 0}, {2, 0, 0}, {0, 0.5, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0.5, 0}, {-2, 0.5, 0.4}, {8, 2, 0}, {60, 40, 0}};
 }
 
-class Field : public testing::TestWithParam<Covariance> {};
+class Field : public ::testing::TestWithParam<Covariance> {};
 
 TEST_P(Field, HasMeanVarianceAndCovarianceOverSeeds)
 {
@@ -61,7 +61,7 @@ TEST_P(Field, HasTheCorrelationLengthAsIntegralOfItsCorrelation)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Field, testing::Values(Covariance::exponential, Covariance::gaussian, Covariance::separable_exponential),
+INSTANTIATE_TEST_SUITE_P(Of, Field, ::testing::Values(Covariance::exponential, Covariance::gaussian, Covariance::separable_exponential),
                          [](const auto& of) { return std::string(enum_names(of.param)[static_cast<std::size_t>(of.param)]); });
 
 TEST(RandomField, IsAnotherForAnotherSeedOrStream)
