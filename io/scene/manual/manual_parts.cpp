@@ -143,6 +143,7 @@ class Manual {
                   run_columns(), "", part);
       add_columns("Columns of every wall:", reaction_columns(), "WALL", part);
       add_columns("Columns where water flows:", flow_columns(), "", part);
+      add_columns("Columns where particles are split and merged:", resample_columns(), "", part);
       add_columns("Columns of every contact of bodies that are not tied:", contact_columns(), "FIRST_SECOND", part);
       add_columns("Columns of every cut:", cut_columns(), "GROUP", part);
       add_columns("Columns of each of the bodies:", body_columns(), "BODY", part);
