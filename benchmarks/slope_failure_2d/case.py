@@ -92,4 +92,7 @@ def evaluate(lab):
     runs = tools.ends(runs)
     lab.figure(CASE, "verification_slope", lambda figure: draw(figure, runs, data), size=(7.2, 2.6),
                caption="Free surface 7.2 s after the start of the failure.")
-    return [result for name, run in runs.items() for result in judge(name, run, data, info, sizes[name] if name in sizes and VARIANTS[name][1] else None)]
+    results = [result for name, run in runs.items() for result in judge(name, run, data, info, sizes[name] if name in sizes and VARIANTS[name][1] else None)]
+    if lab.level == "full":
+        results += tools.module(CASE, "length").evaluate(lab, CASE, SOFTENING, toe, spacing)
+    return results

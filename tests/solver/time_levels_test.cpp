@@ -186,5 +186,26 @@ TEST(TimeLevelsOfAStep, WorkOfAStepIsTheKineticEnergyThatComesOfIt)
             1e-12);
 }
 
+/// In a rotation the stress of the begin of a step works with the gradient about the places of the begin, that of its end with that about the
+/// places of the end, and both cancel.  With one gradient for both a turn would take 0.15 of the kinetic energy out of the balance.
+TEST(TimeLevelsOfAStep, StressDoesNoWorkInARotation)
+{
+  constexpr Real spin = 6, dt = 0.004;  // [rad/s], [s]
+  Bar m = floating_block();
+  m.problem.transfer.scheme = Scheme::tpic;
+  make_ready(m);
+  Mat<2> turning;
+  turning << 0, -spin, spin, 0;
+  set_velocity<2>(m, turning, turning * Vec<2>(-0.5, -0.5));
+  const Real start = totals(m).kinetic;
+  for (int k = 0; k < 250; ++k) {
+    advance(m, dt);
+    ASSERT_FALSE(m.work.errors.worst());
+  }
+  EXPECT_GT(totals(m).kinetic, 0.5 * start) << "it turns";
+  EXPECT_GT(m.state.energy.internal, 0) << "centrifugal forces stretch it";
+  EXPECT_LT(m.state.energy.internal, 0.03 * start);
+}
+
 }  // namespace
 }  // namespace talus::testing::time_levels_test

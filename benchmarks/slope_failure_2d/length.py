@@ -1,0 +1,47 @@
+"""The slope whose strength falls with a plastic strain averaged over 1 m: where the toe comes to rest over cells, meshes and kernels."""
+import numpy as np
+
+import lab as tools
+
+LENGTH = 1.0  # m, softening_length; bands are 6.3 m wide
+SIZES = [2.0, 1.5, 1.0, 0.7]  # m, cells
+ENDS = [110.3, 110.6]  # m, of the level ground: gmsh makes other triangles
+MESHES_AT = 1.5  # m, cells of the meshes that end there
+MOST = 3.0  # m, asked: difference of the toes
+
+
+def polygons(end):
+    """The regions of the scene, with the level ground up to x = end [m]."""
+    return {"mesh.regions[0].shape.points": [[0, 0], [end, 0], [end, 15], [50, 15], [30, 35], [0, 35]],
+            "mesh.regions[1].shape.points": [[0, 35], [30, 35], [50, 15], [end, 15], [end, 37], [0, 37]]}
+
+
+def moved_front(frame):
+    """x [m] that 99.5 % of what lay above the level ground does not exceed: without the single particles of the tip."""
+    start = frame["position"] - frame["displacement"]
+    moved = (start[:, 0] < 50) & (start[:, 1] > 15)
+    place = frame["position"][moved, 0]
+    order = np.argsort(place)
+    share = np.cumsum(frame["mass"][moved][order]) / np.sum(frame["mass"][moved])
+    return float(place[order][np.searchsorted(share, 0.995)])
+
+
+def evaluate(lab, case, softening, toe, spacing):
+    """Results of the toe and of the front of 99.5 % of the mass, and the differences of the toes of each kernel and of all runs."""
+    variants = {(kernel, size, 110.0): {} for kernel in ("projected", "umls") for size in SIZES}
+    variants |= {("projected", MESHES_AT, end): polygons(end) for end in ENDS}
+    runs = {key: lab.run(f"{case}/scene.yaml", f"length_{key[0]}_{key[1]}_{key[2]}", {
+        **softening, "materials[0].softening_length": LENGTH, "mesh.size": key[1], "kernel": key[0], "transfer.scheme": tools.SUITED[key[0]], **changes})
+        for key, changes in variants.items()}
+    results, toes = [], {}
+    for (kernel, size, end), run in runs.items():
+        frame = run.last_frame()
+        toes[kernel, size, end] = toe(frame, spacing(run))
+        name = f"softening over a length, {kernel}, cells of {size} m" + (f", ground up to {end} m" if end != 110.0 else "")
+        results += [tools.Result(case, f"toe of the debris, {name}", "m", toes[kernel, size, end], "reported", None, None, "", run),
+                    tools.Result(case, f"front of 99.5 % of the mass, {name}", "m", moved_front(frame), "reported", None, None, "", run)]
+    for kernel in ("projected", "umls", ""):
+        of_kernel = [value for key, value in toes.items() if key[0] == kernel or not kernel]
+        results.append(tools.Result(case, f"difference of the toes, softening over a length, {kernel or 'both kernels'}", "m", max(of_kernel) - min(of_kernel),
+                                    "at most", MOST, 0.0, "independence of cells, meshes and kernels", list(runs.values())[-1]))
+    return results
