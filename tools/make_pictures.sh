@@ -42,11 +42,12 @@ scenes=("$@")
 [ ${#scenes[@]} -gt 0 ] || mapfile -t scenes < <(find scenes -mindepth 1 -maxdepth 1 -type d -printf '%f\n' | sort)
 for name in "${scenes[@]}"; do
   build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
-  frame=last range=last window=()
-  [ "$name" = cantilever ] && frame=14 range=whole  # t = 0.7 s, its lowest point; at the end it is back up
+  frame=last range=(last) window=()
+  [ "$name" = cantilever ] && frame=14 range=(whole)  # t = 0.7 s, its lowest point; at the end it is back up
   [ "$name" = foam ] && window=(--window -0.1 0 0.1 0.11)
-  [ "$name" = honey ] && frame=5 range=whole window=(--window -0.06 0 0.06 0.07)  # the thread still falls into the puddle
-  [ "$name" = jelly ] && frame=4 range=whole  # the cube at its lowest
-  render "$name" --frames "$frame" --range "$range" "${window[@]}" --out "scenes/$name/picture.png"
+  [ "$name" = honey ] && frame=5 range=(whole) window=(--window -0.06 0 0.06 0.07)  # the thread still falls into the puddle
+  [ "$name" = jelly ] && frame=4 range=(whole)  # the cube at its lowest
+  [ "$name" = sensitive_clay ] && frame=17 range=(0 1)  # the second slide, as a block with a sunken wedge behind it
+  render "$name" --frames "$frame" --range "${range[@]}" "${window[@]}" --out "scenes/$name/picture.png"
 done
 if [ $# -eq 0 ]; then tools/run_tutorials.py build/talus --pictures; fi
