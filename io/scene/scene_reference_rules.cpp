@@ -41,8 +41,16 @@ class ReferenceRules : private SceneRuleBase {
       add(path, "its reference configuration is that of whole particles: leave this out, or the reference");
     if (const auto sheet = std::ranges::find_if(scene_.rigid, &RigidSpec::is_sheet); sheet != scene_.rigid.end())
       add(path, fmt::format("half of a particle could come to the other side of the sheet \"{}\": leave this out", sheet->name));
+    if (has_law(body, keeps_failure))
+      add(path, "merged with what is intact, what has failed would carry loads again: leave this out, or take a law without failure");
     if (!scene_.cuts.empty())
       add(path, fmt::format("half of a particle could come to the other side of the cut \"{}\": leave this out", scene_.cuts.front().on));
+  }
+  /// Whether a law remembers that it has failed.
+  static bool keeps_failure(const ConstitutiveLaw& law)
+  {
+    return std::ranges::any_of(law.variables(),
+                               [](const HistoryVariable& one) { return one.key == "damage" || one.key == "porosity_gain"; });
   }
   /// Whether a body has a material whose law does something, at the start or from a stage on.
   bool has_law(const BodySpec& body, bool (*does_it)(const ConstitutiveLaw&)) const

@@ -7,6 +7,9 @@ import {make_gauge} from './gauge.js';
 import {el, number, whole, with_unit} from './dom.js';
 import {value_of, NOTHING} from './decode.js';
 
+/** The number of a particle: those from 2^31 on are of particles that were split, which have 2^40 and more in the run. */
+const name_of = (id) => `particle ${id < 2 ** 31 ? whole(id) : 2 ** 40 + id - 2 ** 31}`;
+
 const FASTEST_PLAY = 120; // ms a frame
 
 /** Two values a particle: of the field that colours, of the one that limits. */
@@ -199,7 +202,7 @@ export function start_viewer(run, state, blocks) {
     const p = ids.indexOf(id);
     if (p < 0) {
       view.set_mark(null);
-      picked.replaceChildren(close, el('strong', {}, `particle ${whole(id)}`), el('p', {}, 'is not in this frame.'));
+      picked.replaceChildren(close, el('strong', {}, name_of(id)), el('p', {}, 'is not in this frame.'));
       return;
     }
     const values = await Promise.all(particles.fields.map((_, field) => frames.steps(index, field)));
@@ -209,7 +212,7 @@ export function start_viewer(run, state, blocks) {
     view.set_mark(place);
     picked.replaceChildren(
       close,
-      el('strong', {}, `particle ${whole(id)}`),
+      el('strong', {}, name_of(id)),
       body ? el('span', {}, ` of ${body.name}`) : null,
       el(
         'dl',

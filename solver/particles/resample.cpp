@@ -37,25 +37,35 @@ const ParticleColumn<Mat<D>>& affine_field_of(const Particles<D>& particles) noe
   return particles.C.empty() ? particles.L : particles.C;
 }
 
-/// Half the distance between the halves of a particle, shorter where one would lie outside the mesh; nothing if it does then as well.
+/// Half the distance between the halves, at most the size of the cell [m]: farther away a rank does not know the mesh.  Shorter where one
+/// half would lie outside the mesh; nothing if it does then as well.
 template <int D>
 std::optional<Vec<D>> offset_of_halves(const Mesh<D>& mesh, const Locator<D>& locator, const Vec<D>& x, Index cell,
-                                       const LongestSide<D>& side) noexcept
+                                       const LongestSide<D>& side, Real size) noexcept
 {
   for (const Real share : {1.0, 0.5, 0.25}) {
-    const Vec<D> offset = share * side.length / 4 * side.direction;
+    const Vec<D> offset = share * std::min(side.length / 4, size) * side.direction;
     if (locator(mesh, x + offset, cell) && locator(mesh, x - offset, cell))
       return offset;
   }
   return std::nullopt;
 }
 
-/// Adds the pairs of some rows, ascending in their ids, that are to be merged so that `most` remain, as far as there are pairs.
+/// The centre of mass of two rows.
 template <int D>
-void pair_nearest(const Particles<D>& particles, std::span<const Index> rows, Index surplus, std::vector<std::pair<Index, Index>>& pairs)
+Vec<D> centre_of(const Particles<D>& particles, Index a, Index b) noexcept
+{
+  const Real m = particles.mass[at_row(a)], other = particles.mass[at_row(b)];
+  return (m * particles.x[at_row(a)] + other * particles.x[at_row(b)]) / (m + other);
+}
+
+/// Adds so many pairs of rows of a cell, ascending in their ids, that are to be merged, as far as there are pairs whose centre is in the mesh.
+template <int D>
+void pair_nearest(const Mesh<D>& mesh, const Locator<D>& locator, const Particles<D>& particles, Index cell, std::span<const Index> rows,
+                  Index surplus, std::vector<std::pair<Index, Index>>& pairs)
 {
   std::vector<std::uint8_t> taken(rows.size(), 0);
-  for (; surplus > 0; --surplus) {
+  while (surplus > 0) {
     Real least = std::numeric_limits<Real>::infinity();
     std::pair<std::size_t, std::size_t> nearest;
     for (std::size_t a = 0; a < rows.size(); ++a)
@@ -64,9 +74,22 @@ void pair_nearest(const Particles<D>& particles, std::span<const Index> rows, In
           least = d, nearest = {a, b};
     if (!(least < std::numeric_limits<Real>::infinity()))
       return;
-    taken[nearest.first] = taken[nearest.second] = 1;
-    pairs.emplace_back(rows[nearest.first], rows[nearest.second]);
+    taken[nearest.second] = 1;
+    const Index row = rows[nearest.first], other = rows[nearest.second];
+    if (!locator(mesh, centre_of(particles, row, other), cell))
+      continue;
+    taken[nearest.first] = 1;
+    pairs.emplace_back(row, other);
+    --surplus;
   }
+}
+
+/// Whether matter has expanded so far that it flies apart: splitting it would only add particles.
+template <int D>
+bool is_spray(const Particles<D>& particles, Index row) noexcept
+{
+  constexpr Real most = 8;
+  return particles.volume[at_row(row)] > most * particles.volume0[at_row(row)];
 }
 
 /// What counts of a particle in the balances.
@@ -98,8 +121,12 @@ void halve(const Vec<D>& offset, const Vec<D>& material, Particles<D>& particles
   const Mat<D> F = particles.F[p].template topLeftCorner<D, D>();
   particles.x.set(p, particles.x[p] + offset);
   particles.v.set(p, particles.v[p] + affine_field_of(particles)[p] * offset);
-  if (const Vec<D> at_start = F.inverse() * offset; !particles.x0.empty() && at_start.allFinite())
+  // Where F is more than the deformation of what the particle covers, as after merging, the place at the start is within its size then.
+  if (Vec<D> at_start = F.inverse() * offset; !particles.x0.empty() && at_start.allFinite()) {
+    const Real size = std::pow(particles.volume0[p], 1.0 / D);
+    at_start *= std::min(Real{1}, size / at_start.norm());
     particles.x0.set(p, particles.x0[p] + at_start);
+  }
   for (ParticleColumn<Real>* column : {&particles.mass, &particles.volume0, &particles.volume})
     column->set(p, (*column)[p] / 2);
   if (!particles.applied.empty())
@@ -128,6 +155,7 @@ void unite_rows(const std::array<std::size_t, 2>& rows, Material& material, Part
 {
   const auto weights = [&](const ParticleColumn<Real>& column) { return std::array{column[rows[0]], column[rows[1]]}; };
   const std::array by_mass = weights(particles.mass), by_volume0 = weights(particles.volume0), by_volume = weights(particles.volume);
+  const Mat3 of_larger = particles.F[rows[by_volume0[0] < by_volume0[1] ? 1 : 0]];
   average_rows(particles.x, rows, by_mass), average_rows(particles.v, rows, by_mass), average_rows(particles.x0, rows, by_mass);
   average_rows(particles.L, rows, by_mass), average_rows(particles.C, rows, by_mass), average_rows(particles.F, rows, by_volume0);
   for (ParticleColumn<Real>* column :
@@ -137,11 +165,12 @@ void unite_rows(const std::array<std::size_t, 2>& rows, Material& material, Part
   add_rows(particles.mass, rows), add_rows(particles.volume0, rows), add_rows(particles.volume, rows), add_rows(particles.applied, rows);
 
   const std::size_t p = rows[0];
-  const Real volume = particles.volume[p];
+  const Real volume = particles.volume[p], ratio = volume / particles.volume0[p];
   Mat3 F = particles.F[p];
-  const Real wanted = volume / particles.volume0[p] / F.determinant();
-  if (const Real stretch = std::pow(wanted, 1.0 / D); std::isfinite(stretch))
-    F.template topLeftCorner<D, D>() *= stretch;
+  // The mean of deformations that differ much may turn inside out: then it is that of the larger particle.
+  if (constexpr Real least = 0.5; !(F.determinant() > least * ratio))
+    F = of_larger;
+  F.template topLeftCorner<D, D>() *= std::pow(ratio / F.determinant(), 1.0 / D);
   particles.F.set(p, F);
   particles.domain.set(p, std::pow(volume, 1.0 / D) * Mat<D>::Identity());
   Real* const history = material.history.row(static_cast<Index>(p) - material.begin);
@@ -168,6 +197,41 @@ std::vector<std::int64_t> all_ids(Communicator& ranks, std::vector<std::int64_t>
   return ids;
 }
 
+/// Copies of the particles that are split, in the order of the plan.
+template <int D>
+ParticleSet<D> copies_of(const ResamplePlan<D>& plan, const std::vector<Body>& bodies, const std::vector<Material>& materials,
+                         const Particles<D>& particles)
+{
+  ParticleSet<D> copies{bodies, {}, {}};
+  std::vector<const std::byte*> rows;  // of each column, nullptr where it has none
+  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
+    rows.push_back(column.empty() ? nullptr : reinterpret_cast<const std::byte*>(numbers_of(column, 0)));
+  });
+  std::size_t number = 0;
+  copies.particles.for_each_column([&](std::string_view, std::string_view, auto& column) {
+    const std::byte* const from = rows[number++];
+    if (from == nullptr)
+      return;
+    column.resize(plan.split.size());
+    for (std::size_t k = 0; k < plan.split.size(); ++k)
+      load_row(from + row_bytes<std::decay_t<decltype(column)>> * at_row(plan.split[k].row), column, k);
+  });
+  auto next = plan.split.begin();
+  Index begin = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    Material& material = copies.materials.emplace_back(materials[b].without_particles());
+    const auto first = next;
+    next = std::find_if(first, plan.split.end(), [&](const auto& one) { return one.row >= bodies[b].end; });
+    Body& body = copies.bodies[b];
+    body.begin = begin, body.end = begin += static_cast<Index>(next - first);
+    material.set_range(body);
+    material.history.resize(body.size());
+    for (Index i = 0; i < body.size(); ++i)
+      std::ranges::copy(materials[b].history.bytes_of_row((first + i)->row - bodies[b].begin), material.history.bytes_of_row(i).begin());
+  }
+  return copies;
+}
+
 Material& material_of(std::vector<Material>& materials, std::size_t row) noexcept
 {
   return *std::ranges::find_if(materials, [&](const Material& one) { return static_cast<Index>(row) < one.end; });
@@ -186,29 +250,33 @@ ResamplePlan<D> plan_resampling(const Mesh<D>& mesh, const Locator<D>& locator, 
     if (!options[b] || bodies[b].size() == 0)
       continue;
     const auto of_body = std::span(order.row).subspan(at_row(bodies[b].begin), at_row(bodies[b].size()));
-    for (std::size_t first = 0; first < of_body.size();) {
+    const Index most = options[b]->most.value();
+    for (std::size_t first = 0, end = 0; first < of_body.size(); first = end) {
       const Index cell = particles.cell[at_row(of_body[first])];
-      std::size_t end = first;
+      while (end < of_body.size() && particles.cell[at_row(of_body[end])] == cell)
+        ++end;
+      const auto count = static_cast<Index>(end - first);
+      Index room = most - count;
       free.clear();
-      const Real longest = options[b]->longest * std::pow(mesh.volume(cell), 1.0 / D);
-      for (; end < of_body.size() && particles.cell[at_row(of_body[end])] == cell; ++end) {
-        const Index row = of_body[end];
+      const Real size = std::pow(mesh.volume(cell), 1.0 / D), longest = options[b]->longest * size;
+      for (const Index row : of_body.subspan(first, end - first)) {
         const Mat<D> domain = particles.domain[at_row(row)];
         if (kept.place(particles.id[at_row(row)]) || !domain.allFinite())
           continue;
         free.push_back(row);
-        if (domain.squaredNorm() <= longest * longest)  // no singular value is larger than this norm
+        // No singular value is larger than this norm.
+        if (room <= 0 || domain.squaredNorm() <= longest * longest || is_spray(particles, row))
           continue;
         const LongestSide<D> side = longest_side<D>(domain);
         if (!(side.length > longest))
           continue;
-        if (const auto offset = offset_of_halves(mesh, locator, particles.x[at_row(row)], cell, side)) {
+        if (const auto offset = offset_of_halves(mesh, locator, particles.x[at_row(row)], cell, side, size)) {
           plan.split.push_back({row, *offset, side.material});
           free.pop_back();
+          --room;
         }
       }
-      pair_nearest(particles, free, static_cast<Index>(end - first) - options[b]->most.value(), plan.merge);
-      first = end;
+      pair_nearest(mesh, locator, particles, cell, free, count - most, plan.merge);
     }
   }
   std::ranges::sort(plan.split, {}, &ResamplePlan<D>::Split::row);
@@ -224,11 +292,7 @@ void resample(const ResamplePlan<D>& plan, std::int64_t splits, Communicator& ra
     ids.push_back(particles.id[at_row(one.row)]);
   const std::vector<std::int64_t> of_all = all_ids(ranks, ids);
 
-  ParticleSet<D> halves{bodies, materials, particles};
-  std::ranges::fill(halves.particles.cell, none);
-  for (const auto& one : plan.split)
-    halves.particles.cell[at_row(one.row)] = particles.cell[at_row(one.row)];
-  drop_lost(halves.bodies, halves.materials, halves.particles);
+  ParticleSet<D> halves = copies_of(plan, bodies, materials, particles);
   for (std::size_t k = 0; k < plan.split.size(); ++k) {
     const auto& [row, offset, material] = plan.split[k];
     const ResampleSums<D> before = balances_of(particles, row);

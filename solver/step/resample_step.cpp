@@ -4,6 +4,20 @@
 
 namespace talus {
 
+/// Particles by whose ids loads act, on particles or near a side of a body.
+template <int D>
+TrackedIds loaded_particles(const Model<D>& m)
+{
+  std::vector<std::int64_t> ids;
+  const Loads<D>& loads = m.problem.loads;
+  if (!m.work.carriers.empty() || !loads.on_surfaces.empty())
+    for (const std::int64_t id : m.state.particles.id)
+      if (m.work.carriers.place(id) ||
+          std::ranges::any_of(loads.on_surfaces, [&](const SurfaceLoad<D>& load) { return load.near.place(id).has_value(); }))
+        ids.push_back(id);
+  return TrackedIds(std::move(ids));
+}
+
 template <int D>
 void resample_particles(Model<D>& m)
 {
@@ -18,7 +32,7 @@ void resample_particles(Model<D>& m)
   copy_to_columns(m);
   State<D>& state = m.state;
   const ResamplePlan<D> plan =
-      plan_resampling<D>(m.problem.mesh, m.problem.locator, due, m.work.carriers, state.bodies, state.particles, m.work.order);
+      plan_resampling<D>(m.problem.mesh, m.problem.locator, due, loaded_particles(m), state.bodies, state.particles, m.work.order);
   if (ranks.sum(static_cast<std::int64_t>(plan.size())) == 0) {
     drop_copy(m);
     return;

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/parallel/threads.hpp"
 #include "mesh/geometry/spacing.hpp"
+#include "solver/particles/resample.hpp"
 
 namespace talus {
 
@@ -129,7 +130,11 @@ class FrameWriter {
   BlockId add_ids(const std::vector<std::int64_t>& ids)
   {
     if (!last_ids_ || *last_ids_ != ids) {
-      const std::vector<std::uint32_t> numbers(ids.begin(), ids.end());
+      // Numbers from 2^40 on, of particles that were split, are those from 2^31 on here: see viewer.js.
+      std::vector<std::uint32_t> numbers;
+      for (const std::int64_t id : ids)
+        numbers.push_back(id < first_resampled_id ? static_cast<std::uint32_t>(id)
+                                                  : std::uint32_t{1} << 31 | static_cast<std::uint32_t>(id - first_resampled_id));
       id_block_ = page_.add(packed(numbers));
       last_ids_ = ids;
     }

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace talus {
 
@@ -24,13 +25,26 @@ bool has_gravity(const Scene& scene)
   return std::ranges::any_of(scene.loads, [](const LoadSpec& load) { return std::holds_alternative<GravitySpec>(load); });
 }
 
+/// The velocity of a body at the start, as the scene has it; zeros where it has none, and numbers in one form.
+std::vector<std::string> velocity_in_words(const Scene& scene, const BodySpec& body)
+{
+  std::vector<std::string> words = body.velocity;
+  words.resize(static_cast<std::size_t>(scene.dimension), "0");
+  for (std::string& word : words) {
+    char* end = nullptr;
+    if (const Real number = std::strtod(word.c_str(), &end); !word.empty() && *end == 0)
+      word = fmt::format("{}", number + 0);  // -0 is 0
+  }
+  return words;
+}
+
 /// Whether two bodies start with different velocities, so that they may meet.
 bool bodies_may_meet(const Scene& scene)
 {
   const BodySpec* first = nullptr;
   for (const BodySpec& body : scene.bodies)
     if (is_there_at_first(scene, body)) {
-      if (first != nullptr && body.velocity != first->velocity)
+      if (first != nullptr && velocity_in_words(scene, body) != velocity_in_words(scene, *first))
         return true;
       first = first != nullptr ? first : &body;
     }

@@ -161,6 +161,49 @@ TYPED_TEST(ResampleIn, CrowdedCellsMergeTheirNearestParticles)
     EXPECT_LE(n, 3) << "cell " << cell;
 }
 
+/// Layers that shear has drawn out in opposite directions have a mean deformation that is turned inside out.
+TYPED_TEST(ResampleIn, ParticlesOfOppositeShearsMergeWithoutTurningInsideOut)
+{
+  constexpr int D = TypeParam::D;
+  auto m = block<TypeParam>({.longest = 100, .most = 2, .every = 1});
+  Particles<D>& p = m.state.particles;
+  for (std::size_t row = 0; row < p.id.size(); ++row) {
+    Mat3 F = Mat3::Identity();
+    const Real shear = row % 2 == 0 ? 6 : -6, angle = row % 2 == 0 ? 0.3 : -0.3;
+    F(0, 1) = shear;
+    Mat3 turn = Mat3::Identity();
+    turn.template topLeftCorner<2, 2>() << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+    p.F.set(row, turn * F * turn.transpose());
+  }
+  EXPECT_LT(Mat3((p.F[0] + p.F[1]) / 2).determinant(), 0) << "of the mean";
+  resample_particles(m);
+  ASSERT_GT(m.state.resampling.merges, 0);
+  for (std::size_t row = 0; row < p.id.size(); ++row)
+    EXPECT_NEAR(Mat3(p.F[row]).determinant(), p.volume[row] / p.volume0[row], 1e-12);
+}
+
+TYPED_TEST(ResampleIn, CellsThatAreFullAndMatterThatFliesApartAreNotSplit)
+{
+  constexpr int D = TypeParam::D;
+  auto full = block<TypeParam>({.longest = 1, .most = 5, .every = 1});
+  set_fields<D>(full.state.particles, 4);
+  resample_particles(full);
+  std::map<Index, int> in_cell;
+  for (const Index cell : full.state.particles.cell)
+    ++in_cell[cell];
+  EXPECT_GT(full.state.resampling.splits, 0);
+  EXPECT_EQ(full.state.resampling.merges, 0);
+  for (const auto& [cell, n] : in_cell)
+    EXPECT_LE(n, 5) << "cell " << cell;
+
+  auto spray = block<TypeParam>({.longest = 1, .most = 1000, .every = 1});
+  Particles<D>& p = spray.state.particles;
+  for (std::size_t row = 0; row < p.id.size(); ++row)
+    p.volume.set(row, 9 * p.volume0[row]), p.domain.set(row, 4 * p.domain[row]);
+  resample_particles(spray);
+  EXPECT_EQ(spray.state.resampling.splits, 0);
+}
+
 TYPED_TEST(ResampleIn, TheBalancesOfABodyThatIsTornApartClose)
 {
   constexpr int D = TypeParam::D;
@@ -220,6 +263,22 @@ TYPED_TEST(ResampleIn, IsBitwiseIdenticalFromColumnsAndOnAnyNumberOfThreads)
   EXPECT_EQ(runs[0], runs[2]);
 }
 
+TEST(Resample, KeepsParticlesNearASideThatIsLoaded)
+{
+  using S = Kind<2, Projected>;
+  auto m = block<S>({.longest = 1, .most = 3, .every = 1});
+  set_fields<2>(m.state.particles, 4);
+  SurfaceLoad<2> load;
+  load.body = 0, load.reach = 0.1;
+  load.near = TrackedIds(m.state.particles.id);
+  m.problem.loads.on_surfaces.push_back(load);
+  resample_particles(m);
+  EXPECT_EQ(m.state.resampling.splits + m.state.resampling.merges, 0);
+  m.problem.loads.on_surfaces.clear();
+  resample_particles(m);
+  EXPECT_GT(m.state.resampling.merges, 0);
+}
+
 TEST(Resample, KeepsParticlesThatCarryLoadsAndHalvesInsideTheMesh)
 {
   using S = Kind<2, Projected>;
@@ -228,15 +287,20 @@ TEST(Resample, KeepsParticlesThatCarryLoadsAndHalvesInsideTheMesh)
   const std::int64_t carrier = m.state.particles.id[60];
   const Mat<2> of_carrier = m.state.particles.domain[60];
   m.work.carriers = TrackedIds({carrier});
-  for (std::size_t row = 0; row < 40; ++row) {  // so long that halves, and quarters of the way to them, lie outside
-    m.state.particles.domain.set(row, 40 * Mat<2>::Identity());
+  Particles<2>& p = m.state.particles;
+  Mat<2> long_across = Mat<2>::Zero();
+  long_across(0, 0) = 40, long_across(1, 1) = 1e-3;
+  for (std::size_t row = 0; row < 40; ++row) {  // beside a wall: halves, and quarters of the way to them, lie outside
+    const Vec<2> beside(1e-3, 0.1 + 0.02 * static_cast<Real>(row));
+    p.x.set(row, beside), p.domain.set(row, long_across);
+    p.cell[row] = m.problem.locator(m.problem.mesh, beside, none).value();
   }
+  update_rows(m);
   resample_particles(m);
-  const Particles<2>& p = m.state.particles;
   for (std::size_t row = 0; row < p.id.size(); ++row) {
     EXPECT_TRUE(m.problem.locator(m.problem.mesh, p.x[row], none).has_value());
     if (p.id[row] < 40 || p.id[row] == carrier) {
-      EXPECT_EQ(Mat<2>(p.domain[row]), p.id[row] == carrier ? of_carrier : Mat<2>(40 * Mat<2>::Identity()));
+      EXPECT_EQ(Mat<2>(p.domain[row]), p.id[row] == carrier ? of_carrier : long_across);
     }
   }
   EXPECT_GT(of_carrier.norm(), 0.1) << "it would be split";
