@@ -186,8 +186,8 @@ TEST(TimeLevelsOfAStep, WorkOfAStepIsTheKineticEnergyThatComesOfIt)
             1e-12);
 }
 
-/// In a rotation the stress of the begin of a step works with the gradient about the places of the begin, that of its end with that about the
-/// places of the end, and both cancel.  With one gradient for both a turn would take 0.07 of the kinetic energy out of the balance.
+/// Stress works with the gradient about the places of the middle of a step, which in a rotation has no symmetric part.  With that about the
+/// places of its begin a turn would take 0.07 of the kinetic energy out of the balance.
 TEST(TimeLevelsOfAStep, StressDoesNoWorkInARotation)
 {
   constexpr Real spin = 6, dt = 0.002;  // [rad/s], [s]
