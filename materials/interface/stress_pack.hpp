@@ -141,17 +141,13 @@ template <int D>
   return J > 0 && answered;
 }
 
-/// Work of the stress in the step [J], by the trapezoidal rule; `before` and `volume_before` are those at its begin.  The velocity gradient is
-/// that about the positions in the middle of the step, L (I + dt L / 2)^-1: with L, which is about those at its begin, stress would work in
-/// rotations (docs/theory/time.md).
+/// Work of the stress in the step [J]; `before` and `volume_before` are those at its begin.
 template <int D>
 [[gnu::always_inline]] inline SimdReal work_of(const StressStrip<D>& strip, std::size_t i, const MatOf<D>& rate,
                                                const Sym3Of<SimdReal>& before, const SimdReal& volume_before,
                                                const Sym3Of<SimdReal>& stress) noexcept
 {
-  const MatOf<D> half = MatOf<D>::Identity() + SimdReal(0.5 * strip.dt) * rate, back = half.inverse();
-  const MatOf<D> in_middle = rate.lazyProduct(back);
-  return 0.5 * strip.dt * (volume_before * stress_power<D>(before, in_middle) + strip.volume.load(i) * stress_power<D>(stress, in_middle));
+  return 0.5 * strip.dt * (volume_before * stress_power<D>(before, rate) + strip.volume.load(i) * stress_power<D>(stress, rate));
 }
 
 /// Adds sound particles to what the step reports.

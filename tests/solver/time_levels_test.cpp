@@ -186,27 +186,5 @@ TEST(TimeLevelsOfAStep, WorkOfAStepIsTheKineticEnergyThatComesOfIt)
             1e-12);
 }
 
-/// Stress works with the gradient about the places of the middle of a step, which in a rotation has no symmetric part.  With that about the
-/// places of its begin a turn would take 0.07 of the kinetic energy out of the balance.
-TEST(TimeLevelsOfAStep, StressDoesNoWorkInARotation)
-{
-  constexpr Real spin = 6, dt = 0.002;  // [rad/s], [s]
-  Bar m = make_model<Projected<2>>(unit_box<2>(8, 0));
-  m.problem.transfer = {.scheme = Scheme::aflip, .musl = {}, .pic_damping_time = {}, .pic_damping_crossings = {}};
-  add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 4, [](const Vec<2>& x) { return (x - Vec<2>(0.5, 0.5)).cwiseAbs().maxCoeff() < 0.25; });
-  make_ready(m);
-  Mat<2> turning;
-  turning << 0, -spin, spin, 0;
-  set_velocity<2>(m, turning, turning * Vec<2>(-0.5, -0.5));
-  const Real start = totals(m).kinetic;
-  for (int k = 0; k < 500; ++k) {
-    advance(m, dt);
-    ASSERT_FALSE(m.work.errors.worst()) << "step " << k;
-  }
-  EXPECT_GT(totals(m).kinetic, 0.5 * start) << "it turns";
-  EXPECT_GT(m.state.energy.internal, 0) << "centrifugal forces stretch it";
-  EXPECT_LT(m.state.energy.internal, 0.03 * start);
-}
-
 }  // namespace
 }  // namespace talus::testing::time_levels_test
