@@ -237,11 +237,12 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
   const Totals<D> sums = totals(view);
   const Vec<D> centre = sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(empty_entry));
   std::vector<Real> row;
-  put_all<D>(run_columns(), RunNow<D>{view, sums, centre, accounts.energy(view)}, row);
+  const EnergyNow energy = accounts.energy(view);
+  put_all<D>(run_columns(), RunNow<D>{view, sums, centre, energy}, row);
   if (view.problem.flow.any())
     put_all<D>(flow_columns(), view.state.flow, row);
   if (any_resampled(view.problem.resampling))
-    put_all<D>(resample_columns(), ResampleNow{view.state.resampling, accounts.energy(view)}, row);
+    put_all<D>(resample_columns(), ResampleNow{view.state.resampling, energy}, row);
   if (view.problem.equations != nullptr)
     put_all<D>(solve_columns(), view.state.solve, row);
   const Real elapsed = view.state.clock.time - state_.time;

@@ -19,7 +19,7 @@ std::vector<ReferenceOptions> references_of(const Scene& scene)
 
 std::vector<std::optional<ResampleOptions>> resampling_of(const Scene& scene)
 {
-  const Index fewest = scene.dimension == 2 ? 24 : 48;  // more than there are after a split in each direction of cells of the default
+  const Index fewest = scene.dimension == 2 ? 24 : 48;  // 4 particles a cell, split once along each axis, are 16 and 32
   std::vector<std::optional<ResampleOptions>> all;
   for (const BodySpec& body : scene.bodies) {
     std::optional<ResampleOptions>& one = all.emplace_back(body.resample);

@@ -120,14 +120,6 @@ class VariedLawOf final : public VariedLaw {
   }
   /// What answers for the particles of several lanes: their laws and the constants of these, worked out once per step.
   OfParticles of_particles(const StateLanes<State>& states) const noexcept { return OfParticles(*this, states); }
-  SimdReal wave_speed(const Mat3Of<SimdReal>& F, const StateLanes<State>& states) const noexcept
-  {
-    return of_particles(states).wave_speed(F, states);
-  }
-  Mat3Of<SimdReal> update(const IncrementOf<SimdReal>& in, StateLanes<State>& states) const noexcept
-  {
-    return of_particles(states).update(in, states);
-  }
   StressSums update_stress(const Material& material, const StressStrip<2>& strip) const noexcept override
   {
     return detail::update_strip(*this, material, strip);

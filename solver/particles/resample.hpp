@@ -21,14 +21,16 @@ namespace talus {
 //
 // and everything else copied [splitting by accumulated stretch: Ma, Zhang, Lian & Zhou 2009, CMES 39, 101; resampling of shear flows: Yue,
 // Smith, Batty, Zheng & Grinspun 2015, ACM Trans. Graph. 34, 160].  Mass, momentum, the sum of m C and the volume integrals of stress and
-// history stay; the affine momentum m C s^2/16 u becomes momentum of the particles.
+// history stay; the part s^2/16 m (C u) u^T of the affine momentum becomes one of positions and velocities.  Halves are at most the size of
+// the cell from where the particle was.  Not split are particles of cells that are full already, and matter that has expanded eightfold.
 //
 // A cell with more particles of a body than allowed merges the pair of the least distance, then the next, until it has no more.  With weights
 // by mass for x, v, C, by initial volume for F and the history, by volume for stress,
 //
 //     m = m1 + m2,   x = sum m x / m,   v = sum m v / m,   C = sum m C / m,   V0, V summed,   det F made V / V0,   R a square or cube of V
 //
-// so mass, momentum, the sum of m C, plastic work and heat stay; the kinetic energy of the difference of v is lost, and counted.
+// so mass, momentum, the sum of m C, plastic work and heat stay; the kinetic energy of the difference of v is lost, and counted.  Where the
+// mean of both F has lost half of its determinant, F is that of the larger particle.
 
 /// What is to be done to rows of particles.
 template <int D>

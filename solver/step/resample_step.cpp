@@ -21,6 +21,8 @@ TrackedIds loaded_particles(const Model<D>& m)
 template <int D>
 void resample_particles(Model<D>& m)
 {
+  if (!any_resampled(m.problem.resampling))
+    return;
   const std::int64_t step = m.state.clock.step;
   std::vector<std::optional<ResampleOptions>> due = m.problem.resampling;
   for (std::optional<ResampleOptions>& body : due)

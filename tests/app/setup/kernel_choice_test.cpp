@@ -82,6 +82,7 @@ TEST(KernelChoice, FlipAndContactsAreNamedWhereBodiesMeet)
   EXPECT_THAT(advice(meeting(""), flowing), IsEmpty());
   EXPECT_THAT(advice(blocks("", "region: left, velocity: [1, 0]", "region: right, velocity: [1, 0]"), elastic), IsEmpty())
       << "they fly side by side";
+  EXPECT_THAT(advice(blocks("", "region: left, velocity: [\"0.0\", \"-0\"]"), elastic), IsEmpty()) << "both rest";
 }
 
 TEST(KernelChoice, BendingIsNamedWhereTheSurfaceOfASlenderBodyCutsCells)

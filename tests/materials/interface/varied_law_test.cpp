@@ -145,8 +145,9 @@ TEST(VariedLaw, EveryLaneAnswersAsItWouldAlone)
         F(k).set(lane, change(k) + (k % 4 == 0 ? 1 : 0)), rate(k).set(lane, change(k) / 1e-3);
     }
     StateLanes<MohrCoulomb::State> states{columns.data(), stride, count};
-    const SimdReal speeds = varied->wave_speed(F, states);
-    const Mat3Of<SimdReal> after = varied->update(IncrementOf<SimdReal>{F, rate, stress, 1e-3, 0, false}, states);
+    const auto of_particles = varied->of_particles(states);
+    const SimdReal speeds = of_particles.wave_speed(F, states);
+    const Mat3Of<SimdReal> after = of_particles.update(IncrementOf<SimdReal>{F, rate, stress, 1e-3, 0, false}, states);
     for (int lane = 0; lane < pack_size; ++lane) {
       std::vector<Real>& row = rows[static_cast<std::size_t>(lane)];
       if (lane < count) {
