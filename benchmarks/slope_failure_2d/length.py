@@ -6,7 +6,7 @@ import lab as tools
 LENGTH = 1.0  # m, softening_length; bands are 6.3 m wide
 SIZES = [2.0, 1.5, 1.0, 0.7]  # m, cells
 ENDS = [110.3, 110.6]  # m, of the level ground: gmsh makes other triangles
-MESHES_AT = 1.5  # m, cells of the meshes that end there
+MESHES_AT = [2.0, 1.5]  # m, cells of the meshes that end there
 MOST = 3.0  # m, asked: difference of the toes
 
 
@@ -29,7 +29,7 @@ def moved_front(frame):
 def evaluate(lab, case, softening, toe, spacing):
     """Results of the toe and of the front of 99.5 % of the mass, and the differences of the toes of each kernel and of all runs."""
     variants = {(kernel, size, 110.0): {} for kernel in ("projected", "umls") for size in SIZES}
-    variants |= {("projected", MESHES_AT, end): polygons(end) for end in ENDS}
+    variants |= {("projected", size, end): polygons(end) for size in MESHES_AT for end in ENDS}
     runs = {key: lab.run(f"{case}/scene.yaml", f"length_{key[0]}_{key[1]}_{key[2]}", {
         **softening, "materials[0].softening_length": LENGTH, "mesh.size": key[1], "kernel": key[0], "transfer.scheme": tools.SUITED[key[0]], **changes})
         for key, changes in variants.items()}
