@@ -46,8 +46,20 @@ class Rules : private SceneRuleBase {
     only_of("projected", scene_.projected.has_value());
     if (scene_.kernel == "projected" && scene_.transfer.scheme == Scheme::apic)
       add("transfer.scheme", "apic takes its matrix from the weights of particles, which projected does not make; take tpic or aflip");
+    if (scene_.transfer.is_symmetric())
+      symmetric_transfer();
     if (scene_.transfer.pic_damping_fall_times && !against_gravity(scene_))
       add("transfer.pic_damping_fall_times", "it counts in sqrt(h/g), and the scene has no gravity; give pic_damping_crossings");
+  }
+
+  void symmetric_transfer()
+  {
+    if (scene_.kernel != "projected")
+      add("transfer.scheme", fmt::format("saflip needs the node operators of the kernel projected; the scene's is {}", scene_.kernel));
+    if (!scene_.cuts.empty())
+      add("transfer.scheme", "saflip does not know the sides of cuts: take aflip");
+    if (std::ranges::any_of(scene_.rigid, &RigidSpec::is_sheet))
+      add("transfer.scheme", "saflip does not know the sides of sheets: take aflip");
   }
 
   void time()

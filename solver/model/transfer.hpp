@@ -56,6 +56,8 @@ class Transfer {
   virtual void particles_to_nodes(Model<D>& m) = 0;
   /// Adds the rows of blocks and ranks to sums of the nodes, in a fixed order.
   virtual void assemble_nodes(Model<D>& m) = 0;
+  /// Symmetric affine FLIP: adds the momentum of affine fields that fit the velocities of the nodes at this time [s]; nothing else does.
+  virtual void add_affine_momentum(Model<D>& m, Real time) = 0;
   /// Replaces the net accelerations of nodes, `felt`, by the part that acts on particles.
   virtual void filter_acceleration(Model<D>& m) = 0;
   /// Starts to send the motion of nodes to other ranks.

@@ -15,8 +15,9 @@ enum class Scheme : std::uint8_t {
   apic,   ///< affine field C = B D^-1 from the weights' second moment   [Jiang et al. 2015]
   tpic,   ///< affine field C = L, the kernel's own velocity gradient    [Nakamura et al. 2023]
   aflip,  ///< increments as flip, affine field as tpic                  [affine FLIP, Fei et al. 2021, ACM Trans. Graph. 40]
+  saflip,  ///< affine field from the velocities of the nodes, increments by the transpose: symmetric affine FLIP
 };
-constexpr std::array<std::string_view, 4> enum_names(Scheme) { return {"flip", "apic", "tpic", "aflip"}; }
+constexpr std::array<std::string_view, 5> enum_names(Scheme) { return {"flip", "apic", "tpic", "aflip", "saflip"}; }
 
 struct TransferOptions {
   Scheme scheme = Scheme::aflip;
@@ -29,11 +30,12 @@ struct TransferOptions {
   {
     return std::tuple{
         optional_choice("scheme", &TransferOptions::scheme,
-                        "flip (increments), apic (affine, own matrix), tpic (affine, velocity gradient) or aflip (increments, affine)"),
+                        "flip (increments), apic (affine, own matrix), tpic (affine, velocity gradient), aflip (increments, affine) or saflip (increments, "
+                        "affine, keeps the energy of elastic bodies; projected only)"),
         optional("musl", &TransferOptions::musl, any, "-",
-                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip and aflip, false otherwise"),
+                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip, aflip and saflip, false otherwise"),
         optional("pic_damping_time", &TransferOptions::pic_damping_time, positive, "s",
-                 "flip and aflip: share dt/time of the nodes' velocity in each step; default none"),
+                 "flip, aflip and saflip: share dt/time of the nodes' velocity in each step; default none"),
         optional("pic_damping_crossings", &TransferOptions::pic_damping_crossings, positive, "-",
                  "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip, but see "
                  "pic_damping_fall_times"),
@@ -47,13 +49,18 @@ struct TransferOptions {
   {
     const int given = (pic_damping_time ? 1 : 0) + (pic_damping_crossings ? 1 : 0) + (pic_damping_fall_times ? 1 : 0);
     if (given > 0 && !increments())
-      problems.emplace_back("pic_damping_time, pic_damping_crossings and pic_damping_fall_times are for schemes flip and aflip only");
+      problems.emplace_back("pic_damping_time, pic_damping_crossings and pic_damping_fall_times are for schemes flip, aflip and saflip only");
+    if (is_symmetric() && !uses_musl())
+      problems.emplace_back("saflip maps momentum back to the nodes: leave musl out");
     if (given > 1)
       problems.emplace_back("give one of pic_damping_time, pic_damping_crossings and pic_damping_fall_times");
   }
 
-  bool affine() const noexcept { return scheme != Scheme::flip; }
-  bool increments() const noexcept { return scheme == Scheme::flip || scheme == Scheme::aflip; }
+  /// Particles carry an affine field.
+  bool affine() const noexcept { return scheme != Scheme::flip && scheme != Scheme::saflip; }
+  bool increments() const noexcept { return scheme == Scheme::flip || scheme == Scheme::aflip || scheme == Scheme::saflip; }
+  /// The affine field is that of the nodes' own velocities, and increments come back by the transpose of what it adds.
+  bool is_symmetric() const noexcept { return scheme == Scheme::saflip; }
   /// Momentum goes back to the nodes before L is taken [Sulsky, Zhou & Schreyer 1995].
   bool uses_musl() const noexcept { return musl.value_or(increments()); }
   /// The affine field is kept beside L: it is that of the step's own velocities while L is of remapped ones, or it is not L at all.

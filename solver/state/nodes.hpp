@@ -133,6 +133,13 @@ struct alignas(64) ProjectedNodeMotion {
   Mat<D> L = Mat<D>::Zero();       ///< velocity gradient [1/s]
 };
 
+/// Changes of velocity b on a linear shape function n, for symmetric affine FLIP.
+template <int D>
+struct ChangeOnHat {
+  Vec<D> change = Vec<D>::Zero();  ///< sum_v S_nv b_v [m/s]
+  Mat<D> moment = Mat<D>::Zero();  ///< sum_v S_nv b_v (x) (x_v - c_n) [m^2/s]
+};
+
 /// A node of a velocity field as boundary conditions see it.
 struct NodeOfField {
   Index node = none;

@@ -79,4 +79,35 @@ void add_new_momentum(const CellMoments<D>& moments, const std::array<Vec<D>, D 
   }
 }
 
+/// Adds T_n = sum_p m B_n tau_p to `affine` of the rows of the vertices of a cell, where tau_p = sum_l B_l [Q_l + s_l (x) (c_l - c_p)] [kg m^2/s],
+/// from changes s and their moments Q on the vertices: the transpose of what the affine part of add_new_momentum() makes of gradients.
+template <int D, class Row>
+void add_moment_of_changes(const CellMoments<D>& moments, const std::array<Vec<D>, D + 1>& arms,
+                           const std::array<const ChangeOnHat<D>*, D + 1>& changes, std::span<Row> rows,
+                           std::span<const std::uint16_t> slots) noexcept
+{
+  Pack T[CellMoments<D>::numbers];  // vertex n in lane n
+  const auto take = [&](int k, const Pack& of) __attribute__((always_inline)) { T[k] = of; };
+  load_rows<CellMoments<D>::numbers>({moments.of[0], moments.of[1], moments.of[2], moments.of[D]}, take);
+  Pack tau[D][D]{};
+  for (int l = 0; l <= D; ++l) {
+    const auto vertex = static_cast<std::size_t>(l);
+    const ChangeOnHat<D>& of = *changes[vertex];
+    Pack M{}, arm[D]{};  // sum m B_n B_l, and sum m B_n B_l (c_l - c_p)
+    for (int j = 0; j <= D; ++j) {
+      const Pack& of_pair = T[D + CellMoments<D>::product(l, j)];
+      M += of_pair;
+      for (int d = 0; d < D; ++d)
+        arm[d] += of_pair * (arms[vertex][d] - arms[static_cast<std::size_t>(j)][d]);
+    }
+    for (int i = 0; i < D; ++i)
+      for (int d = 0; d < D; ++d)
+        tau[i][d] += M * of.moment(i, d) + arm[d] * of.change[i];
+  }
+  for (int a = 0; a <= D; ++a)
+    for (int i = 0; i < D; ++i)
+      for (int d = 0; d < D; ++d)
+        rows[slots[static_cast<std::size_t>(a)]].affine(i, d) += tau[i][d][a];
+}
+
 }  // namespace talus

@@ -41,6 +41,8 @@ struct KernelRows {
   Interfaces<D> interfaces;
   Extension<D> extension;
   std::vector<KeptWeights<D, K::max_nodes>> kept;  ///< of each strip of a key, where bodies have references and weights are not cheap
+  SparseRows<ChangeOnHat<D>> changes;              ///< symmetric affine FLIP: what goes back to particles, on each linear shape function
+  std::vector<Vec<D>> changes_of_nodes;            ///< and on each node [m/s]
   SparseRows<Mat<D>> gradient_of_remapped;         ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
 
   KernelRows(const Mesh<D>& mesh, const K& of_kernel, std::size_t number)
@@ -64,7 +66,7 @@ struct KernelRows {
   /// The memory [B], without that of the halo, where these shares of the nodes are in use and of the blocks hold particles.
   std::int64_t bytes(Real of_nodes, Real of_blocks) const
   {
-    const Real in_use = of_nodes * static_cast<Real>(bytes_of_all(gradient_of_remapped, projected.sum, projected.motion)) +
+    const Real in_use = of_nodes * static_cast<Real>(bytes_of_all(changes, gradient_of_remapped, projected.sum, projected.motion)) +
                         of_blocks * static_cast<Real>(bytes_of_all(moments, blocks.row) + interfaces.bytes_of_cells());
     std::size_t weights = 0;
     for (const auto& of_strip : kept)

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "solver/state/integrate.hpp"
+#include "solver/transfer/join_ranks.hpp"
 #include "solver/transfer/make_transfer.hpp"
+#include "solver/transfer/remap.hpp"
 #include "solver/transfer/sweep.hpp"
 
 namespace talus {
@@ -39,14 +41,14 @@ class TransferOf final : public Transfer<D> {
   void join(const Problem<D>& problem) override
   {
     for (Rows& of : fields_)
-      join(problem, of);
+      join_ranks(problem, of);
   }
   void prepare(const Problem<D>& problem) override
   {
     while (fields_.size() < problem.n_fields()) {
       Rows& of = fields_.emplace_back(problem.mesh, kernel_, fields_.size());
       if (!problem.subdomain.alone())
-        join(problem, of);
+        join_ranks(problem, of);
     }
   }
 
@@ -61,6 +63,10 @@ class TransferOf final : public Transfer<D> {
         of.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
       }
       if constexpr (Rows::projects) {
+        if (m.problem.transfer.is_symmetric()) {
+          of.changes.resize(of.projected.motion.size());
+          of.changes_of_nodes.assign(of.changes.size(), Vec<D>::Zero());
+        }
         of.interfaces.begin(m.problem.mesh, m.state.materials, is_of_field, kernel_.separates_materials());
         if (kernel_.extends_surfaces())
           of.extension.begin(m.problem.mesh);
@@ -80,7 +86,7 @@ class TransferOf final : public Transfer<D> {
   void particles_to_nodes(Model<D>& m) override
   {
     for_each_own_block(
-        rows().halo, [&](Index b) { Sweep(m, fields_, b).add_arrivals(); }, [&] { send_rows<Whole>(); });
+        rows().halo, [&](Index b) { Sweep(m, fields_, b).add_arrivals(); }, [&] { send_rows<Whole>(std::span(fields_)); });
   }
 
   void assemble_nodes(Model<D>& m) override
@@ -99,6 +105,13 @@ class TransferOf final : public Transfer<D> {
       if constexpr (Rows::projects)
         extend_forces(m, of);
     }
+  }
+
+  void add_affine_momentum([[maybe_unused]] Model<D>& m, [[maybe_unused]] Real time) override
+  {
+    if constexpr (Rows::projects)
+      if (m.problem.transfer.is_symmetric())
+        Remap<D, K>(m, fields_).add_affine_momentum(time);
   }
 
   void filter_acceleration([[maybe_unused]] Model<D>& m) override
@@ -135,8 +148,11 @@ class TransferOf final : public Transfer<D> {
     const bool musl = m.problem.transfer.uses_musl();
     for (Rows& of : fields_)
       project_to_particles(m, of, kick);
+    if constexpr (Rows::projects)
+      if (m.problem.transfer.is_symmetric())
+        Remap<D, K>(m, fields_).add_transposed_changes();
     if (musl)
-      find_remapped_gradient(m, kick.to, pic);
+      Remap<D, K>(m, fields_).find_gradients(kick.to, pic);
     if constexpr (Rows::projects)
       for (Rows& of : fields_)
         of.interfaces.find_gradients(m.problem.mesh, of.extension, musl ? nodes_of(m, of).remapped : nodes_of(m, of).motion);
@@ -233,44 +249,6 @@ class TransferOf final : public Transfer<D> {
     return occupied_on_both_sides_;
   }
 
-  /// Makes the exchanges with other ranks.  Collective.
-  static void join(const Problem<D>& problem, Rows& of)
-  {
-    Communicator& ranks = *problem.ranks;
-    of.halo = Halo(ranks, problem.mesh, problem.subdomain, of.blocks);
-    of.surfaces = {};  // whose exchange is that of another part
-    const auto copy = [&](MessageTag topic, const std::vector<std::uint8_t>& wanted) {
-      return copies_of_nodes(ranks, problem.subdomain, topic, wanted);
-    };
-    const std::vector<std::uint8_t> read = nodes_read(problem.subdomain, of.blocks);
-    if constexpr (Rows::projects) {
-      const auto both = [](std::vector<std::uint8_t> marked, const std::vector<std::uint8_t>& others) {
-        for (std::size_t n = 0; n < marked.size(); ++n)
-          marked[n] |= others[n];
-        return marked;
-      };
-      const auto around_own = [&](int rings) { return spread_by_rings(problem.mesh, problem.own.owned, rings); };
-      const std::vector<std::uint8_t> moving = spread_by_rings(problem.mesh, read, 1);
-      of.ghosts.sums = copy(MessageTag::sums, both(around_own(1), read));
-      of.ghosts.motion = copy(MessageTag::motion, moving);
-      of.ghosts.felt = copy(MessageTag::felt, around_own(2));
-      if (of.kernel.extends_surfaces())
-        of.ghosts.near = copy(MessageTag::near, both(around_own(Extension<D>::rings), moving));
-      of.ghosts.cells = copies_of_cells(ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
-      of.projected.find_late(problem.mesh, problem.own);
-    } else {
-      of.ghosts.motion = copy(MessageTag::motion, read);
-    }
-  }
-
-  /// Sends the rows of outer blocks to the owners of their nodes.
-  template <class What>
-  void send_rows()
-  {
-    for (Rows& of : fields_)
-      of.halo.template send_rows<What>(of.blocks);
-  }
-
   /// Finds the tangential extension at surfaces that cut cells, and moves the forces of the stress with it.
   void extend_forces(Model<D>& m, Rows& of) requires Rows::projects
   {
@@ -307,75 +285,6 @@ class TransferOf final : public Transfer<D> {
       if (parts.moves)
         for (Rows& of : fields_)
           of.ghosts.motion.take(m.problem.transfer.uses_musl() ? nodes_of(m, of).remapped : nodes_of(m, of).motion, Whole{});
-  }
-
-  /// MUSL: velocities of the nodes from the momentum of the new velocities of the particles, and what the gradients of these need.
-  void find_remapped_gradient(Model<D>& m, Real mid, Real pic)
-  {
-    if constexpr (!Rows::projects)  // blocks that use nodes of other ranks have rows for them, to be sent first
-      for (Rows& of : fields_)
-        of.ghosts.motion.take(nodes_of(m, of).motion, Whole{});
-    const auto add_momentum = [&](Index b) {
-      if constexpr (WeighsVertices<K, D>)
-        for (Rows& of : fields_)
-          add_new_momentum(m, of, b, m.problem.transfer.increments() ? pic : 1);
-      else
-        Sweep(m, fields_, b).return_momentum(pic);
-    };
-    for_each_own_block(rows().halo, add_momentum, [&] { send_rows<MomentumAlone>(); });
-    for (Rows& of : fields_)
-      assemble_momentum(m, of);
-    m.work.sheets.unite_momentum(m.work.fields);
-    for (Rows& of : fields_)
-      find_remapped_velocity(m, of, mid);
-    m.work.contact.hold(mid, m.state.boundary, m.work.fields);
-    m.work.cuts.hold(mid, m.problem.own, m.state.boundary, m.work.fields.front().nodes);
-    m.work.rigid.hold(mid, m.state.boundary, m.state.rigid, m.work.fields);
-    for (VelocityField<D>& field : m.work.fields)
-      field.small_mass_nodes.extrapolate_velocity(m.problem.mesh, m.problem.own, m.state.boundary, mid, field.nodes);
-    m.work.sheets.copy_to_field_behind(
-        std::span(m.work.fields), [](Nodes<D> & nodes) -> auto& { return nodes.remapped; });
-    for (Rows& of : fields_)
-      send_remapped_velocity(m, of);
-    if constexpr (Rows::projects)
-      for (Rows& of : fields_) {
-        Nodes<D>& nodes = nodes_of(m, of);
-        of.extension.find_velocities(m.problem.own, of.ghosts.near, nodes.remapped);
-        project_gradient(
-            kernel_.node_operators(), of.extension, nodes.in_use, nodes.remapped, [&] { of.ghosts.motion.take(nodes.remapped, Whole{}); },
-            of.projected, of.gradient_of_remapped);
-      }
-  }
-
-  /// MUSL: puts the momentum of the new particle velocities, which is in the rows of blocks, on the nodes.
-  void assemble_momentum(Model<D>& m, Rows& of)
-  {
-    Nodes<D>& nodes = nodes_of(m, of);
-    if constexpr (Rows::projects) {
-      assemble<MomentumAlone>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, [] {});
-      project_momentum(kernel_.node_operators(), m.problem.mesh, m.problem.own, of.projected.sum, nodes.in_use, nodes.sum);
-    } else {
-      assemble<MomentumAlone>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, nodes.sum, [] {});
-    }
-  }
-  /// MUSL: the velocities of this momentum, under the boundary conditions.
-  void find_remapped_velocity(Model<D>& m, Rows& of, Real mid)
-  {
-    Nodes<D>& nodes = nodes_of(m, of);
-    m.work.fields[of.field].small_mass_nodes.lump_momentum(m.problem.mesh, m.problem.own, nodes);
-    nodes.in_use.for_each([&](Index n) {
-      const auto i = static_cast<std::size_t>(n);
-      const Vec<D> v = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
-      nodes.remapped[i] = {v, nodes.motion[i].v};
-    });
-    m.state.boundary.hold(mid, nodes);
-  }
-  /// Starts to send the remapped velocities to other ranks.
-  void send_remapped_velocity(Model<D>& m, Rows& of)
-  {
-    Nodes<D>& nodes = nodes_of(m, of);
-    of.ghosts.motion.send(nodes.remapped, Whole{});
-    add_ranges(nodes.in_use.own(), m.work.sums.remap, [&](Index n) { return remap_work(nodes, n); });
   }
 
   K kernel_;

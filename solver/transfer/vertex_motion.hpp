@@ -63,4 +63,23 @@ class VertexMotion {
   Mat<D> of_cell_[2];
 };
 
+/// Clears the rows of a block with particles and calls f(cell, moments, arms, rows, slots) for its cells with particles.
+template <int D, Kernel<D> K, class F>
+void for_each_cell_with_moments(const Model<D>& m, KernelRows<D, K>& of, Index block, F&& f)
+{
+  if (!of.blocks.occupied[static_cast<std::size_t>(block)])
+    return;
+  const auto rows = of.blocks.rows(block);
+  std::fill(rows.begin(), rows.end(), typename KernelRows<D, K>::Sum{});
+  const Index last = std::min((block + 1) * block_cells, m.problem.mesh.n_cells());
+  for (Index c = block * block_cells; c < last; ++c) {
+    const CellMoments<D>& moments = of.moments[static_cast<std::size_t>(c)];
+    Real mass = 0;
+    for (int a = 0; a <= D; ++a)
+      mass += moments.of[a][D + CellMoments<D>::product(a, a)];
+    if (mass > 0)  // without particles all is zero: not all coordinates of one are
+      f(c, moments, arms_of(m.problem.mesh, of, c, centroid(m.problem.mesh, c)), rows, of.blocks.slots(c));
+  }
+}
+
 }  // namespace talus

@@ -332,25 +332,13 @@ class VertexStrips {
 template <int D, Kernel<D> K>
 void add_new_momentum(const Model<D>& m, KernelRows<D, K>& of, Index block, Real pic)
 {
-  if (!of.blocks.occupied[static_cast<std::size_t>(block)])
-    return;
-  const auto rows = of.blocks.rows(block);
-  std::fill(rows.begin(), rows.end(), typename KernelRows<D, K>::Sum{});
-  const Index last = std::min((block + 1) * block_cells, m.problem.mesh.n_cells());
-  for (Index c = block * block_cells; c < last; ++c) {
-    const CellMoments<D>& moments = of.moments[static_cast<std::size_t>(c)];
-    Real mass = 0;
-    for (int a = 0; a <= D; ++a)
-      mass += moments.of[a][D + CellMoments<D>::product(a, a)];
-    if (!(mass > 0))  // no particles: not all coordinates of one are zero
-      continue;
-    const auto arms = arms_of(m.problem.mesh, of, c, centroid(m.problem.mesh, c));
+  for_each_cell_with_moments(m, of, block, [&](Index c, const CellMoments<D>& moments, const auto& arms, auto rows, auto slots) {
     const VertexMotion<D, K> motion(m, of, none, c);
     if (m.problem.transfer.affine())
-      add_new_momentum<true>(moments, arms, motion, pic, rows, of.blocks.slots(c));
+      add_new_momentum<true>(moments, arms, motion, pic, rows, slots);
     else
-      add_new_momentum<false>(moments, arms, motion, pic, rows, of.blocks.slots(c));
-  }
+      add_new_momentum<false>(moments, arms, motion, pic, rows, slots);
+  });
 }
 
 }  // namespace talus

@@ -32,7 +32,7 @@ inline std::vector<SceneCase> scenes_of_all()
       if (const std::string kernel(K::name); kernel != "projected")
         all.push_back({kernel + "_" + scheme, {.more = "kernel: " + kernel + "\ntransfer: {scheme: " + scheme + "}\n"}});
   });
-  for (const std::string scheme : {"flip", "tpic"})
+  for (const std::string scheme : {"flip", "tpic", "saflip"})
     all.push_back({"projected_" + scheme, {.more = "transfer: {scheme: " + scheme + "}\n"}});
   all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});
   all.push_back(

@@ -43,7 +43,8 @@ using Cases = ::testing::Types<
     Case<3, Umls<3>, Scheme::apic, false>, Case<3, Umls<3>, Scheme::tpic, false>, Case<2, Umls<2>, Scheme::aflip, true>,
     Case<2, Projected<2>, Scheme::flip, true>, Case<2, Projected<2>, Scheme::flip, false>, Case<2, Projected<2>, Scheme::tpic, false>,
     Case<2, Projected<2>, Scheme::aflip, true>, Case<2, Projected<2>, Scheme::aflip, false>, Case<3, Projected<3>, Scheme::flip, true>,
-    Case<3, Projected<3>, Scheme::tpic, true>, Case<3, Projected<3>, Scheme::aflip, true>>;
+    Case<3, Projected<3>, Scheme::tpic, true>, Case<3, Projected<3>, Scheme::aflip, true>, Case<2, Projected<2>, Scheme::saflip, true>,
+    Case<3, Projected<3>, Scheme::saflip, true>>;
 TYPED_TEST_SUITE(EveryKernelAndTransfer, Cases);
 
 /// Hats have no bound on force over mass at a node that a particle has only just come to see: without MUSL they live a short time.

@@ -130,12 +130,12 @@ TEST(Transfer, KindsOfSchemes)
   };
   EXPECT_TRUE(TransferOptions{.scheme = Scheme::flip}.uses_musl() && TransferOptions{.scheme = Scheme::aflip}.uses_musl());
   EXPECT_FALSE(TransferOptions{.scheme = Scheme::apic}.uses_musl() || TransferOptions{.scheme = Scheme::tpic}.uses_musl());
-  for (const Scheme scheme : {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip})
+  for (const Scheme scheme : {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip, Scheme::saflip})
     for (const bool musl : {false, true}) {
       const TransferOptions transfer = of(scheme, musl);
-      EXPECT_EQ(transfer.affine(), scheme != Scheme::flip);
-      EXPECT_EQ(transfer.increments(), scheme == Scheme::flip || scheme == Scheme::aflip);
-      EXPECT_EQ(transfer.own_affine_field(), scheme == Scheme::apic || (musl && scheme != Scheme::flip));
+      EXPECT_EQ(transfer.affine(), scheme != Scheme::flip && scheme != Scheme::saflip);
+      EXPECT_EQ(transfer.increments(), scheme == Scheme::flip || scheme == Scheme::aflip || scheme == Scheme::saflip);
+      EXPECT_EQ(transfer.own_affine_field(), scheme == Scheme::apic || (musl && transfer.affine()));
     }
 }
 

@@ -1,0 +1,109 @@
+#pragma once
+// Symmetric affine FLIP: affine fields that follow from the velocities of the nodes, and the transpose of what they add to the momentum, for the
+// changes that particles take back (docs/theory/transfers.md).
+#include "solver/transfer/projected_nodes.hpp"
+#include "solver/transfer/vertex_motion.hpp"
+
+namespace talus {
+
+/// How often affine fields are found from the velocities that they have changed.
+inline constexpr int affine_sweeps = 1;
+
+/// Whose momentum is summed.
+enum class MomentumOf : std::uint8_t { old_velocities, new_velocities };
+
+/// Adds the momentum of the particles of a block, with affine fields from the gradients of the remapped velocities, to the rows of the block;
+/// `pic` is the share of damping of new velocities.
+template <int D, Kernel<D> K>
+void add_affine_momentum(const Model<D>& m, KernelRows<D, K>& of, Index block, MomentumOf which, Real pic)
+{
+  struct {
+    std::array<const Vec<D>*, D + 1> v, change;
+    std::array<const Mat<D>*, D + 1> L;
+  } motion;
+  const Vec<D> none_of_it = Vec<D>::Zero();
+  const bool is_new = which == MomentumOf::new_velocities;
+  for_each_cell_with_moments(m, of, block, [&](Index c, const CellMoments<D>& moments, const auto& arms, auto rows, auto slots) {
+    for (std::size_t a = 0; a <= D; ++a) {
+      const auto n = static_cast<std::size_t>(m.problem.mesh.cell(c)[a]);
+      motion.v[a] = is_new ? &of.projected.motion[n].v : &none_of_it;
+      motion.change[a] = is_new ? &of.projected.motion[n].change : &none_of_it;
+      motion.L[a] = &of.gradient_of_remapped[n];
+    }
+    add_new_momentum<true>(moments, arms, motion, is_new ? pic : 0, rows, slots);
+  });
+}
+
+/// Finds the changes of the linear shape functions that particles use from those of the nodes, which are in `remapped`: in the first sweep
+/// those that boundary conditions have left, in the others with what is free to change, and then they are added to the motion.
+template <int D, Kernel<D> K>
+void find_changes_on_hats(Model<D>& m, KernelRows<D, K>& of, bool is_first)
+{
+  const NodeOperators<D>& operators = of.kernel.node_operators();
+  Nodes<D>& nodes = nodes_of(m, of);
+  of.ghosts.motion.send(nodes.remapped, Whole{});
+  for_each_seen_hat(
+      nodes.in_use, of.projected, [&] { of.ghosts.motion.take(nodes.remapped, Whole{}); },
+      [&](Index n, ProjectedNodeMotion<D>& motion) {
+        ChangeOnHat<D> on_hat;
+        operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
+          const Vec<D> change = S * nodes.remapped[static_cast<std::size_t>(v)].v;
+          on_hat.change += change;
+          on_hat.moment += change * (m.problem.mesh.node(v) - operators.centre(n)).transpose();
+        });
+        if (is_first) {
+          on_hat.change = motion.change;
+        } else {
+          on_hat.change = m.state.boundary.free_changes(nodes.of_field(n), motion.v) * on_hat.change;
+          motion.change += on_hat.change;
+        }
+        of.changes[static_cast<std::size_t>(n)] = on_hat;
+      });
+}
+
+/// Adds the moments of changes of the particles of a block to its rows.
+template <int D, Kernel<D> K>
+void add_moment_of_changes(const Model<D>& m, KernelRows<D, K>& of, Index block)
+{
+  for_each_cell_with_moments(m, of, block, [&](Index c, const CellMoments<D>& moments, const auto& arms, auto rows, auto slots) {
+    std::array<const ChangeOnHat<D>*, D + 1> changes;
+    for (std::size_t a = 0; a <= D; ++a)
+      changes[a] = &of.changes[static_cast<std::size_t>(m.problem.mesh.cell(c)[a])];
+    add_moment_of_changes(moments, arms, changes, rows, slots);
+  });
+}
+
+/// Sets `remapped` of the nodes to the changes that these moments make, sum_n T_n D_nv / m_v, where boundary conditions leave them free: the
+/// transpose of what add_affine_momentum() makes of velocities.
+template <int D, Kernel<D> K>
+void find_changes_of_nodes(Model<D>& m, KernelRows<D, K>& of)
+{
+  Nodes<D>& nodes = nodes_of(m, of);
+  const OwnNodes& own = m.problem.own;
+  assemble<MomentumAlone>(of.blocks, own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, [] {});
+  nodes.in_use.for_each([&](Index v) {
+    if (!own.has(v))
+      return;
+    Vec<D> momentum = Vec<D>::Zero();
+    of.kernel.node_operators().for_each_in_column(v, [&](Index n, Real, const Vec<D>& gradient) {
+      const ProjectedNodeSum<D>& on_hat = of.projected.sum[static_cast<std::size_t>(n)];
+      if (on_hat.is_seen())
+        momentum += pull_of<D>(on_hat.affine, gradient);
+    });
+    nodes.sum[static_cast<std::size_t>(v)].momentum = momentum;
+  });
+  SmallMassNodes<D>& small = m.work.fields[of.field].small_mass_nodes;
+  small.lump_momentum(m.problem.mesh, own, nodes);
+  const auto free = [&](Index n, const Vec<D>& change) {
+    return Vec<D>(m.state.boundary.free_changes(nodes.of_field(n), nodes.motion[static_cast<std::size_t>(n)].v) * change);
+  };
+  std::vector<Vec<D>>& changes = of.changes_of_nodes;
+  nodes.in_use.for_each([&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    changes[i] = nodes.active[i] ? free(n, nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
+  });
+  small.take(m.problem.mesh, own, free, changes);
+  nodes.in_use.for_each([&](Index n) { nodes.remapped[static_cast<std::size_t>(n)] = {changes[static_cast<std::size_t>(n)], Vec<D>::Zero()}; });
+}
+
+}  // namespace talus
