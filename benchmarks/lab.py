@@ -37,7 +37,7 @@ METHODS = {  # for sweeps, the default first; linear with tpic inverts particles
     for kernel, scheme in (("projected", "aflip"), ("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))}
 METHODS["umls, exact_force, aflip"] = {"kernel": "umls", "umls.gradient": "exact_force", "transfer.scheme": "aflip"}
 CHOICES = METHODS | {  # and those that sweeps leave out
-    "projected, flip": {"kernel": "projected", "transfer.scheme": "flip"},
+    "projected, saflip": {"kernel": "projected", "transfer.scheme": "saflip"},
     "projected, extended, aflip": {"kernel": "projected", "projected.surfaces": "extended", "transfer.scheme": "aflip"}}
 SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> suitable transfer
 OTHER_KERNELS = {"umls": "aflip", "linear": "flip"}  # beside the default, with their transfer: linear with aflip inverts particles where bodies meet

@@ -20,25 +20,15 @@ struct UmlsOptions {
   }
 };
 
-enum class AtInterfaces : std::uint8_t { separate, shared };
-constexpr std::array<std::string_view, 2> enum_names(AtInterfaces) { return {"separate", "shared"}; }
-
 enum class AtSurfaces : std::uint8_t { plain, extended };
 constexpr std::array<std::string_view, 2> enum_names(AtSurfaces) { return {"plain", "extended"}; }
 
 /// The options of the kernel `projected`.
 struct ProjectedOptions {
-  Real alpha = 0.5;  ///< prior weight of neighbours relative to that of the node itself [-]
-  AtInterfaces interfaces = AtInterfaces::separate;
   AtSurfaces surfaces = AtSurfaces::plain;
   static constexpr auto fields()
   {
     return std::tuple{
-        optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own"),
-        optional_choice("interfaces", &ProjectedOptions::interfaces,
-                        "separate (at nodes between bodies of different materials each material has a gradient of its own) or "
-                        "shared (one gradient of all, as for a single material: slip surfaces along interfaces are too strong by two cells "
-                        "over their height)"),
         optional_choice(
             "surfaces", &ProjectedOptions::surfaces,
             "plain or extended (gradients beside a free surface continue the motion inside along the surface: bodies that bend are "

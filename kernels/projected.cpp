@@ -3,10 +3,16 @@
 
 namespace talus {
 
+namespace {
+
+/// Prior weight of the neighbours of a node relative to its own [-].
+constexpr Real weight_of_neighbours = 0.5;
+
+}  // namespace
+
 template <int D>
-Projected<D>::Projected(const Mesh<D>& mesh, const Options& options) : Projected(mesh, maxent_values(mesh, options.alpha))
+Projected<D>::Projected(const Mesh<D>& mesh, const Options& options) : Projected(mesh, maxent_values(mesh, weight_of_neighbours))
 {
-  separates_ = options.interfaces == AtInterfaces::separate;
   extends_ = options.surfaces == AtSurfaces::extended;
 }
 

@@ -47,8 +47,6 @@ class Projected {
   {
     linear_.evaluate(cell, x, count, out);
   }
-  /// Whether bodies of different materials have gradients of their own at nodes between them.
-  bool separates_materials() const noexcept { return separates_; }
   /// Whether gradients at surfaces that cut cells take extended velocities.
   bool extends_surfaces() const noexcept { return extends_; }
   const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
@@ -58,9 +56,9 @@ class Projected {
  private:
   Projected(const Mesh<D>& mesh, MaxentValues rows);
 
+  bool extends_ = false;
   Linear<D> linear_;
   std::vector<Index> as_corners_;
-  bool separates_ = true, extends_ = false;
   NodeOperators<D> node_part_;
 };
 

@@ -178,7 +178,7 @@ void make_step(Model<D>& m, Real dt)
   transfer.assemble_nodes(m);  //  4
   unite_sides_of_sheets(m);
   apply_nodal_loads(m);
-  lump_small_masses(m);                       //  5
+  lump_small_masses(m);  //  5
   transfer.add_affine_momentum(m, kick.from);
   tie_cuts(m, dt);
   integrate_momentum(m, dt);               //  6

@@ -40,7 +40,7 @@ std::string describe(const TransferOptions& transfer)
   if (transfer.uses_musl())
     text += ", musl";
   if (transfer.pic_damping_time)
-    text += fmt::format(", damped in {:.3g} s", *transfer.pic_damping_time);
+    text += std::isinf(*transfer.pic_damping_time) ? ", undamped" : fmt::format(", damped in {:.3g} s", *transfer.pic_damping_time);
   if (transfer.pic_damping_crossings)
     text += fmt::format("{} {:.6g} crossing times of a cell", transfer.pic_damping_time ? "; in stages that seek rest in" : ", damped in",
                         *transfer.pic_damping_crossings);

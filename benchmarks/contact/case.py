@@ -60,9 +60,9 @@ def start_disks(lab):
     return {size: lab.run(f"{CASE}/scene_disks.yaml", f"disks_{size}", {"mesh.size": size}) for size, level in DISKS.items() if lab.level in ("full", level)}
 
 
-def start_disks_with_flip(lab):
-    """The same with the transfer `flip`, which does not damp the vibration that the impact leaves."""
-    return {size: lab.run(f"{CASE}/scene_disks.yaml", f"disks_{size}_flip", {"mesh.size": size, "transfer.scheme": "flip"})
+def start_disks_with_saflip(lab):
+    """The same with the transfer `saflip`, which does not damp the vibration that the impact leaves."""
+    return {size: lab.run(f"{CASE}/scene_disks.yaml", f"disks_{size}_saflip", {"mesh.size": size, "transfer.scheme": "saflip"})
             for size, level in DISKS.items() if lab.level in ("full", level)}
 
 
@@ -137,13 +137,13 @@ def evaluate(lab):
     """Results of disks on planes and of colliding disks."""
     data = tools.reference(CASE)
     runs = runs_down(lab, CASE, "contacts[0].friction", data)
-    disks, with_flip = start_disks(lab), start_disks_with_flip(lab)
+    disks, with_saflip = start_disks(lab), start_disks_with_saflip(lab)
     spheres, moduli = spheres_down(lab), moduli_down(lab, data)
     results = [judge_incline(name, size, place, run, data) for (name, size, place), run in runs.items()]
     for size, run in disks.items():
         results += judge_disks(size, run, data)
-    for size, run in with_flip.items():
-        results += judge_disks(size, run, data, ", flip")
+    for size, run in with_saflip.items():
+        results += judge_disks(size, run, data, ", saflip")
     results += [result for size, run in spheres.items() for result in judge_sphere(size, run, data)]
     results += [judge_modulus(*key, run, data) for key, run in moduli.items()]
     results += tools.with_other_kernels(lab, lambda other: of_kernel(other, data))

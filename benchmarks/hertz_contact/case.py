@@ -6,7 +6,7 @@ import lab as tools
 CASE = "hertz_contact"
 SIZES = {"quick": [0.12, 0.06], "full": [0.12, 0.06, 0.03]}  # m, cells at the contact
 JUDGED = "full"  # the level at which the finest mesh has a verdict
-OTHERS = ("projected, aflip", "projected, flip", "umls, exact_force, aflip")  # beside the kernel and transfer of the scene
+OTHERS = ("projected, aflip", "projected, saflip", "umls, exact_force, aflip")  # beside the kernel and transfer of the scene
 TOUCH = 0.01  # of Hertz's largest force: what counts as contact
 
 

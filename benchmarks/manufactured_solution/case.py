@@ -9,6 +9,8 @@ SIGNS = [1, -1, -1]  # phases 0, pi, pi: nothing is displaced at the start
 PROBLEMS = {"bar": ("scene_bar.yaml", 0, 1, [0.05, 0.0001]), "square": ("scene.yaml", 0.3, 2, [0.1, 0.0001]), "cube": ("scene_cube.yaml", 0.3, 3, [0.1]),
             "ring": ("scene_ring.yaml", 0, 2, [0.1])}
 RING = (0.4, 0.6, 0.5)  # m, radii: inside, outside, and where the amplitude is that of the problem
+METHODS = {kernel: tools.METHODS[f"{kernel}, {scheme}"] for kernel, scheme in tools.SUITED.items()} | {"projected, saflip": tools.CHOICES["projected, saflip"]}
+CHOSEN = ("square", "ring")  # problems that saflip is run on, with the large amplitude
 JUDGED = {"bar": 0.05, "square": 0.1, "cube": 0.1}  # amplitude at which the order is asked of all kernels but linear
 
 
@@ -72,8 +74,8 @@ def start(lab, problem, kernel, amplitude, count, data):
     velocity, force = ring_formulas(amplitude, data) if problem == "ring" else formulas(problem, amplitude, data)
     mesh = {"mesh.grid.cells": [count, 2], "mesh.grid.high": [1, 2 / count], "bodies[0].shape.high": [1, 2 / count]} if problem == "bar" else {
         "mesh.size": 1 / count}
-    return lab.run(f"{CASE}/{PROBLEMS[problem][0]}", f"{problem}_{kernel}_G{amplitude:g}_{count}", {
-        **mesh, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel], "bodies[0].velocity": velocity, "loads[0].acceleration": force})
+    return lab.run(f"{CASE}/{PROBLEMS[problem][0]}", f"{problem}_{tools.label(kernel)}_G{amplitude:g}_{count}", {
+        **mesh, **METHODS[kernel], "bodies[0].velocity": velocity, "loads[0].acceleration": force})
 
 
 def error(run, problem, amplitude, data):
@@ -119,7 +121,7 @@ def draw(figure, curves, data):
         for label, rows in data["published"].get(problem, {}).get(f"{amplitude:g}", {}).items():
             count, value = np.array(rows).T
             axis.loglog(1 / count, value / amplitude * 100, ":", color="0.5" if "linear" in label else "0.2" if label == "iMPM" else "0.7", label=label)
-        for kernel, mark in (("umls", "o-"), ("linear", "s--"), ("projected", "^-")):
+        for kernel, mark in (("umls", "o-"), ("linear", "s--"), ("projected", "^-"), ("projected, saflip", "v-")):
             if (problem, kernel, amplitude) in curves:
                 sizes, errors = curves[problem, kernel, amplitude]
                 axis.loglog(sizes, np.array(errors) * 100, mark, label=f"talus, {kernel}")
@@ -133,7 +135,8 @@ def evaluate(lab):
     """Results of all problems, kernels and amplitudes; judged are the orders of umls and projected at the large amplitude and their errors in the square at 1/h = 32."""
     data, results, curves = tools.reference(CASE), [], {}
     plan = {(problem, kernel, amplitude): {count: start(lab, problem, kernel, amplitude, count, data) for count in counts(problem, kernel, amplitude, lab.level)}
-            for problem, (_, _, _, amplitudes) in PROBLEMS.items() for amplitude in amplitudes for kernel in tools.SUITED}
+            for problem, (_, _, _, amplitudes) in PROBLEMS.items() for amplitude in amplitudes for kernel in METHODS
+            if kernel in tools.SUITED or (problem in CHOSEN and amplitude == 0.1)}
     for key, runs in plan.items():
         found, curves[key] = judge(lab, key, runs, data)
         results += found

@@ -1,5 +1,7 @@
 #include "solver/boundary/boundary_conditions.hpp"
 
+#include <algorithm>
+
 #include "solver/boundary/pushed_node.hpp"
 
 namespace talus {
@@ -240,13 +242,23 @@ void BoundaryConditions<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<B
 
 template <int D>
 void BoundaryConditions<D>::apply(const Kick& kick, const Nodes<D>& nodes, std::span<const ProjectedNodeSum<D>> sums,
-                                  std::span<ProjectedNodeMotion<D>> projected, ExactSums<BoundaryWork>& work)
+                                  std::span<ProjectedNodeMotion<D>> projected, Real pic, ExactSums<BoundaryWork>& work)
 {
   for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     bool sliding{};
-    if (sums[n].is_seen())
-      push(rule, nodes.of_field(rule.node).open, kick, sums[n].mass, projected[n].v, projected[n].change, sliding, work);
+    if (!sums[n].is_seen())
+      continue;
+    const std::uint8_t open = nodes.of_field(rule.node).open;
+    const Vec<D> change = projected[n].change;
+    ProjectedNodeMotion<D> obeying = projected[n];
+    push(rule, open, kick, 0, obeying.v, obeying.change, sliding, work);  // to see where it leads
+    if (obeying.v == projected[n].v)
+      continue;
+    const Vec<D> pushed = obeying.change - change, own = sums[n].momentum / sums[n].mass + change;
+    const Real share = std::clamp<Real>((obeying.v - own).dot(pushed) / pushed.squaredNorm(), 0, 1);
+    push(rule, open, kick, (share + pic * (1 - share)) * sums[n].mass, projected[n].v, projected[n].change, sliding, work);
+    projected[n].change = change + share * pushed;
   }
 }
 

@@ -45,10 +45,12 @@ class BoundaryConditions {
 
   /// Makes the new velocities of active nodes obey the conditions, and marks those that slide.  The work done is added to `work`.
   void apply(const Kick& kick, Nodes<D>& nodes, ExactSums<BoundaryWork>& work);
-  /// Applies the conditions to projected nodes, whose values combine those of several nodes; `sums` has their mass and tells which ones
-  /// particles use.
+  /// Applies the conditions to projected nodes, whose values combine those of several nodes; `sums` has their mass and momentum and tells which
+  /// ones particles use.  Velocities obey in full: particles move with them, and take the share `pic` of them.  Changes, the rest of what
+  /// particles take, are made only as far as the particles' own mean velocity needs them: where it obeys already, an impulse would put energy
+  /// into motion that nodes do not see.
   void apply(const Kick& kick, const Nodes<D>& nodes, std::span<const ProjectedNodeSum<D>> sums,
-             std::span<ProjectedNodeMotion<D>> projected, ExactSums<BoundaryWork>& work);
+             std::span<ProjectedNodeMotion<D>> projected, Real pic, ExactSums<BoundaryWork>& work);
   /// Applies the conditions to a node of this mass [kg].
   void apply(NodeOfField at, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<BoundaryWork>& work);
   /// The impulses of the present step by condition, to be summed over the ranks; then the conditions store them.

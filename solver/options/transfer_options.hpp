@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "core/error.hpp"
@@ -11,10 +12,10 @@
 namespace talus {
 
 enum class Scheme : std::uint8_t {
-  flip,   ///< particles take the nodes' increments                      [Brackbill & Ruppel 1986]
-  apic,   ///< affine field C = B D^-1 from the weights' second moment   [Jiang et al. 2015]
-  tpic,   ///< affine field C = L, the kernel's own velocity gradient    [Nakamura et al. 2023]
-  aflip,  ///< increments as flip, affine field as tpic                  [affine FLIP, Fei et al. 2021, ACM Trans. Graph. 40]
+  flip,    ///< particles take the nodes' increments                      [Brackbill & Ruppel 1986]
+  apic,    ///< affine field C = B D^-1 from the weights' second moment   [Jiang et al. 2015]
+  tpic,    ///< affine field C = L, the kernel's own velocity gradient    [Nakamura et al. 2023]
+  aflip,   ///< increments as flip, affine field as tpic                  [affine FLIP, Fei et al. 2021, ACM Trans. Graph. 40]
   saflip,  ///< affine field from the velocities of the nodes, increments by the transpose: symmetric affine FLIP
 };
 constexpr std::array<std::string_view, 5> enum_names(Scheme) { return {"flip", "apic", "tpic", "aflip", "saflip"}; }
@@ -30,15 +31,17 @@ struct TransferOptions {
   {
     return std::tuple{
         optional_choice("scheme", &TransferOptions::scheme,
-                        "flip (increments), apic (affine, own matrix), tpic (affine, velocity gradient), aflip (increments, affine) or saflip (increments, "
+                        "flip (increments), apic (affine, own matrix), tpic (affine, velocity gradient), aflip (increments, affine) or "
+                        "saflip (increments, "
                         "affine, keeps the energy of elastic bodies; projected only)"),
         optional("musl", &TransferOptions::musl, any, "-",
-                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip, aflip and saflip, false otherwise"),
+                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip, aflip and saflip, false "
+                 "otherwise"),
         optional("pic_damping_time", &TransferOptions::pic_damping_time, positive, "s",
                  "flip, aflip and saflip: share dt/time of the nodes' velocity in each step; default none"),
         optional("pic_damping_crossings", &TransferOptions::pic_damping_crossings, positive, "-",
                  "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip, but see "
-                 "pic_damping_fall_times"),
+                 "pic_damping_fall_times, and for saflip in stages that seek rest"),
         optional("pic_damping_fall_times", &TransferOptions::pic_damping_fall_times, positive, "-",
                  "the same, time counted in sqrt(h/g), h the median altitude of the cells in which bodies are placed and g the largest "
                  "gravity; default 1 "
@@ -49,7 +52,8 @@ struct TransferOptions {
   {
     const int given = (pic_damping_time ? 1 : 0) + (pic_damping_crossings ? 1 : 0) + (pic_damping_fall_times ? 1 : 0);
     if (given > 0 && !increments())
-      problems.emplace_back("pic_damping_time, pic_damping_crossings and pic_damping_fall_times are for schemes flip, aflip and saflip only");
+      problems.emplace_back(
+          "pic_damping_time, pic_damping_crossings and pic_damping_fall_times are for schemes flip, aflip and saflip only");
     if (is_symmetric() && !uses_musl())
       problems.emplace_back("saflip maps momentum back to the nodes: leave musl out");
     if (given > 1)
@@ -83,6 +87,10 @@ struct TransferOptions {
       all.pic_damping_crossings = 25;
       if (fall > 0 && flows)
         all.pic_damping_fall_times = 1;
+    }
+    if (is_symmetric() && !pic_damping_time && !pic_damping_crossings && !pic_damping_fall_times) {
+      all.pic_damping_crossings = 25;  // in stages that seek rest, and in no others
+      all.pic_damping_time = std::numeric_limits<Real>::infinity();
     }
     if (all.pic_damping_fall_times)
       all.pic_damping_time = *all.pic_damping_fall_times * fall;

@@ -55,12 +55,12 @@ class Interfaces {
   /// Sets the groups by the materials of the bodies for which is_of_field(body) holds, one group of all unless they are to be `separate`,
   /// and makes room for their sums.
   template <class IsOfField>
-  void begin(const Mesh<D>& mesh, const std::vector<Material>& materials, IsOfField&& is_of_field, bool separate)
+  void begin(const Mesh<D>& mesh, const std::vector<Material>& materials, IsOfField&& is_of_field)
   {
     group_of_body_.assign(materials.size(), 0);
     std::vector<Index> kinds;
     for (std::size_t body = 0; body < materials.size(); ++body) {
-      if (!separate || !is_of_field(static_cast<Index>(body)))
+      if (!is_of_field(static_cast<Index>(body)))
         continue;
       const Material& material = materials[body];
       const auto same = std::ranges::find(kinds, material.kind);

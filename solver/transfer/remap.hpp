@@ -39,12 +39,11 @@ class Remap {
     });
     find_velocities(mid);
     if constexpr (Rows::projects)
-      if (m_.problem.transfer.is_symmetric())
-        for (int sweep = 0; sweep < affine_sweeps; ++sweep) {
-          find_gradients_of_affine_fields();
-          sum_momentum([&](Index b) { add_affine_momentum(b, MomentumOf::new_velocities, pic); });
-          find_velocities(mid);
-        }
+      if (m_.problem.transfer.is_symmetric()) {
+        find_gradients_of_affine_fields();
+        sum_momentum([&](Index b) { add_affine_momentum(b, MomentumOf::new_velocities, pic); });
+        find_velocities(mid);
+      }
     for (const Rows& of : fields_)
       add_ranges(nodes_of(m_, of).in_use.own(), m_.work.sums.remap, [&](Index n) { return remap_work(nodes_of(m_, of), n); });
     if constexpr (Rows::projects)
@@ -58,18 +57,16 @@ class Remap {
   /// this time [s].
   void add_affine_momentum(Real time) requires Rows::projects
   {
-    for (int sweep = 0; sweep < affine_sweeps; ++sweep) {
-      for (VelocityField<D>& field : m_.work.fields) {
-        divide_momentum(field.nodes);
-        m_.state.boundary.for_each_node([&](Index n) {  // which one-sided walls will be touched is not known yet
-          Vec<D>& v = field.nodes.remapped[static_cast<std::size_t>(n)].v;
-          v = m_.state.boundary.held({n, every_plane}, time, v);
-        });
-      }
-      send_velocities(time);
-      find_gradients_of_affine_fields();
-      sum_momentum([&](Index b) { add_affine_momentum(b, MomentumOf::old_velocities, 0); });
+    for (VelocityField<D>& field : m_.work.fields) {
+      divide_momentum(field.nodes);
+      m_.state.boundary.for_each_node([&](Index n) {
+        Vec<D>& v = field.nodes.remapped[static_cast<std::size_t>(n)].v;
+        v = m_.state.boundary.held(without_one_sided_walls(n), time, v);
+      });
     }
+    send_velocities(time);
+    find_gradients_of_affine_fields();
+    sum_momentum([&](Index b) { add_affine_momentum(b, MomentumOf::old_velocities, 0); });
   }
   /// And at its end: adds to the changes that particles take back the transpose of what the affine fields have added to the momentum.
   void add_transposed_changes() requires Rows::projects
@@ -79,23 +76,20 @@ class Remap {
         const auto i = static_cast<std::size_t>(n);
         field.nodes.remapped[i] = {field.nodes.motion[i].change, Vec<D>::Zero()};
       });
-    for (int sweep = 0; sweep < affine_sweeps; ++sweep) {
-      for (Rows& of : fields_)
-        find_changes_on_hats(m_, of, sweep == 0);
-      const auto add_moments = [&](Index b) {
-        for (Rows& of : fields_)
-          add_moment_of_changes(m_, of, b);
-      };
-      for_each_own_block(fields_.front().halo, add_moments, [&] { send_rows<MomentumAlone>(fields_); });
-      for (Rows& of : fields_)
-        find_changes_of_nodes(m_, of);
-    }
     for (Rows& of : fields_)
-      find_changes_on_hats(m_, of, false);
+      find_changes_on_hats(m_, of);
+    const auto add_moments = [&](Index b) {
+      for (Rows& of : fields_)
+        add_moment_of_changes(m_, of, b);
+    };
+    for_each_own_block(fields_.front().halo, add_moments, [&] { send_rows<MomentumAlone>(fields_); });
+    for (Rows& of : fields_)
+      find_changes_of_nodes(m_, of);
+    for (Rows& of : fields_)
+      add_changes_to_hats(m_, of);
   }
 
  private:
-  static constexpr std::uint8_t every_plane = 0xff;
   /// Sums momentum, which add(block) adds to the rows of a block, on the nodes.
   template <class Add>
   void sum_momentum(Add&& add)

@@ -6,8 +6,9 @@
 
 namespace talus {
 
-/// How often affine fields are found from the velocities that they have changed.
-inline constexpr int affine_sweeps = 1;
+/// A node for boundary conditions whose one-sided walls do not act.  When affine fields are found it is not known yet which of them material will
+/// touch, and what comes back has to be the transpose.
+inline NodeOfField without_one_sided_walls(Index node) noexcept { return {node, 0xff}; }
 
 /// Whose momentum is summed.
 enum class MomentumOf : std::uint8_t { old_velocities, new_velocities };
@@ -34,30 +35,38 @@ void add_affine_momentum(const Model<D>& m, KernelRows<D, K>& of, Index block, M
   });
 }
 
-/// Finds the changes of the linear shape functions that particles use from those of the nodes, which are in `remapped`: in the first sweep
-/// those that boundary conditions have left, in the others with what is free to change, and then they are added to the motion.
+/// Finds the changes of the linear shape functions that particles use, those of the nodes in `remapped` with boundary conditions of their own,
+/// and their moments.
 template <int D, Kernel<D> K>
-void find_changes_on_hats(Model<D>& m, KernelRows<D, K>& of, bool is_first)
+void find_changes_on_hats(Model<D>& m, KernelRows<D, K>& of)
 {
   const NodeOperators<D>& operators = of.kernel.node_operators();
   Nodes<D>& nodes = nodes_of(m, of);
   of.ghosts.motion.send(nodes.remapped, Whole{});
   for_each_seen_hat(
       nodes.in_use, of.projected, [&] { of.ghosts.motion.take(nodes.remapped, Whole{}); },
-      [&](Index n, ProjectedNodeMotion<D>& motion) {
-        ChangeOnHat<D> on_hat;
+      [&](Index n, const ProjectedNodeMotion<D>& motion) {
+        ChangeOnHat<D> on_hat{motion.change, Mat<D>::Zero()};
         operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
-          const Vec<D> change = S * nodes.remapped[static_cast<std::size_t>(v)].v;
-          on_hat.change += change;
-          on_hat.moment += change * (m.problem.mesh.node(v) - operators.centre(n)).transpose();
+          on_hat.moment += S * nodes.remapped[static_cast<std::size_t>(v)].v * (m.problem.mesh.node(v) - operators.centre(n)).transpose();
         });
-        if (is_first) {
-          on_hat.change = motion.change;
-        } else {
-          on_hat.change = m.state.boundary.free_changes(nodes.of_field(n), motion.v) * on_hat.change;
-          motion.change += on_hat.change;
-        }
         of.changes[static_cast<std::size_t>(n)] = on_hat;
+      });
+}
+
+/// Adds the changes of the nodes in `remapped` to those of the linear shape functions, where boundary conditions leave them free.
+template <int D, Kernel<D> K>
+void add_changes_to_hats(Model<D>& m, KernelRows<D, K>& of)
+{
+  Nodes<D>& nodes = nodes_of(m, of);
+  of.ghosts.motion.send(nodes.remapped, Whole{});
+  for_each_seen_hat(
+      nodes.in_use, of.projected, [&] { of.ghosts.motion.take(nodes.remapped, Whole{}); },
+      [&](Index n, ProjectedNodeMotion<D>& motion) {
+        Vec<D> change = Vec<D>::Zero();
+        of.kernel.node_operators().for_each_in_row(
+            n, [&](Index v, Real S, const Vec<D>&) { change += S * nodes.remapped[static_cast<std::size_t>(v)].v; });
+        motion.change += m.state.boundary.free_changes(without_one_sided_walls(n), motion.v) * change;
       });
 }
 
@@ -95,7 +104,7 @@ void find_changes_of_nodes(Model<D>& m, KernelRows<D, K>& of)
   SmallMassNodes<D>& small = m.work.fields[of.field].small_mass_nodes;
   small.lump_momentum(m.problem.mesh, own, nodes);
   const auto free = [&](Index n, const Vec<D>& change) {
-    return Vec<D>(m.state.boundary.free_changes(nodes.of_field(n), nodes.motion[static_cast<std::size_t>(n)].v) * change);
+    return Vec<D>(m.state.boundary.free_changes(without_one_sided_walls(n), nodes.motion[static_cast<std::size_t>(n)].v) * change);
   };
   std::vector<Vec<D>>& changes = of.changes_of_nodes;
   nodes.in_use.for_each([&](Index n) {
@@ -103,7 +112,9 @@ void find_changes_of_nodes(Model<D>& m, KernelRows<D, K>& of)
     changes[i] = nodes.active[i] ? free(n, nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
   });
   small.take(m.problem.mesh, own, free, changes);
-  nodes.in_use.for_each([&](Index n) { nodes.remapped[static_cast<std::size_t>(n)] = {changes[static_cast<std::size_t>(n)], Vec<D>::Zero()}; });
+  nodes.in_use.for_each([&](Index n) {
+    nodes.remapped[static_cast<std::size_t>(n)] = {changes[static_cast<std::size_t>(n)], Vec<D>::Zero()};
+  });
 }
 
 }  // namespace talus

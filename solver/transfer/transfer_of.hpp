@@ -67,7 +67,7 @@ class TransferOf final : public Transfer<D> {
           of.changes.resize(of.projected.motion.size());
           of.changes_of_nodes.assign(of.changes.size(), Vec<D>::Zero());
         }
-        of.interfaces.begin(m.problem.mesh, m.state.materials, is_of_field, kernel_.separates_materials());
+        of.interfaces.begin(m.problem.mesh, m.state.materials, is_of_field);
         if (kernel_.extends_surfaces())
           of.extension.begin(m.problem.mesh);
       }
@@ -147,7 +147,7 @@ class TransferOf final : public Transfer<D> {
     const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing, m.state.stage.seeks_rest);
     const bool musl = m.problem.transfer.uses_musl();
     for (Rows& of : fields_)
-      project_to_particles(m, of, kick);
+      project_to_particles(m, of, kick, m.problem.transfer.increments() ? pic : 1);
     if constexpr (Rows::projects)
       if (m.problem.transfer.is_symmetric())
         Remap<D, K>(m, fields_).add_transposed_changes();
@@ -223,8 +223,9 @@ class TransferOf final : public Transfer<D> {
   }
 
   /// Makes the motion that particles read from that of the nodes: a copy, or projected nodes, on which boundary conditions act once more
-  /// where their values combine those of several nodes.
-  void project_to_particles([[maybe_unused]] Model<D>& m, [[maybe_unused]] Rows& of, [[maybe_unused]] const Kick& kick)
+  /// where their values combine those of several nodes; `pic` is the share of these velocities that particles take.
+  void project_to_particles([[maybe_unused]] Model<D>& m, [[maybe_unused]] Rows& of, [[maybe_unused]] const Kick& kick,
+                            [[maybe_unused]] Real pic)
   {
     if constexpr (Rows::projects) {
       Nodes<D>& nodes = nodes_of(m, of);
@@ -232,7 +233,7 @@ class TransferOf final : public Transfer<D> {
       project_motion(
           kernel_.node_operators(), of.extension, nodes.in_use, nodes.motion, [&] { of.ghosts.motion.take(nodes.motion, Whole{}); },
           of.projected);
-      m.state.boundary.apply(kick, nodes, of.projected.sum, of.projected.motion, m.work.sums.beyond_nodes);
+      m.state.boundary.apply(kick, nodes, of.projected.sum, of.projected.motion, pic, m.work.sums.beyond_nodes);
     }
   }
 

@@ -63,14 +63,15 @@ class VertexMotion {
   Mat<D> of_cell_[2];
 };
 
-/// Clears the rows of a block with particles and calls f(cell, moments, arms, rows, slots) for its cells with particles.
+/// Clears the momentum in the rows of a block with particles and calls f(cell, moments, arms, rows, slots) for its cells with particles.
 template <int D, Kernel<D> K, class F>
 void for_each_cell_with_moments(const Model<D>& m, KernelRows<D, K>& of, Index block, F&& f)
 {
   if (!of.blocks.occupied[static_cast<std::size_t>(block)])
     return;
   const auto rows = of.blocks.rows(block);
-  std::fill(rows.begin(), rows.end(), typename KernelRows<D, K>::Sum{});
+  for (auto& row : rows)
+    row.clear_momentum();
   const Index last = std::min((block + 1) * block_cells, m.problem.mesh.n_cells());
   for (Index c = block * block_cells; c < last; ++c) {
     const CellMoments<D>& moments = of.moments[static_cast<std::size_t>(c)];

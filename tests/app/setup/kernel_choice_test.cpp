@@ -73,12 +73,12 @@ TEST(KernelChoice, TransfersThatLoseEnergyInEachStepAreNamedWhereGravityMakesBod
   EXPECT_THAT(advice(blocks(gravity + "transfer: {scheme: flip}\n"), flowing), IsEmpty());
 }
 
-TEST(KernelChoice, FlipAndContactsAreNamedWhereBodiesMeet)
+TEST(KernelChoice, SaflipAndContactsAreNamedWhereBodiesMeet)
 {
   const auto meeting = [](const std::string& more) { return blocks(more, "region: left, velocity: [1, 0]"); };
   EXPECT_THAT(advice(meeting(""), elastic),
               ElementsAre(HasSubstr("aflip damps the vibration that an impact leaves"), HasSubstr("`contacts`")));
-  EXPECT_THAT(advice(meeting("transfer: {scheme: flip}\ncontacts: [{between: [one, two]}]\n"), elastic), IsEmpty());
+  EXPECT_THAT(advice(meeting("transfer: {scheme: saflip}\ncontacts: [{between: [one, two]}]\n"), elastic), IsEmpty());
   EXPECT_THAT(advice(meeting(""), flowing), IsEmpty());
   EXPECT_THAT(advice(blocks("", "region: left, velocity: [1, 0]", "region: right, velocity: [1, 0]"), elastic), IsEmpty())
       << "they fly side by side";

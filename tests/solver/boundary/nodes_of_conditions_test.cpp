@@ -164,7 +164,7 @@ TEST(NodesAtWalls, PlanesThatNothingTouchesDoNotAct)
   SparseRows<ProjectedNodeMotion<2>> projected(sums.size());
   sums[n].mass = 5, sums[n].lightest = 1;
   projected[n].v = into_both;
-  square.walls.apply(Square::kick, square.nodes, sums, projected, square.work);
+  square.walls.apply(Square::kick, square.nodes, sums, projected, 0, square.work);
   expect_near(projected[n].v, out_of_one);
 }
 
@@ -234,6 +234,31 @@ TEST(NodesAtWalls, ClosedAreFacetsOfPlanesAndThoseWhoseNodesAreAllHeld)
   EXPECT_EQ(places(other), (Places{{0, 0.25}, {0, 0.75}, {0.25, 0}, {0.75, 0}}));
 }
 
+/// Velocities with which particles move obey; the impulse on particles is what their own mean velocity needs, and all of it for what they take
+/// from the nodes as it is.
+TEST(NodesAtWalls, HatsPushParticlesOnlyAsFarAsTheseDoNotObeyAlready)
+{
+  struct Case {
+    Real own, pic, share, impulse;
+  };
+  for (const Case& one : {Case{-2, 0, 1, 10}, Case{-0.5, 0, 0.25, 2.5}, Case{1, 0, 0, 0}, Case{1, 0.1, 0, 1}, Case{-0.5, 1, 0.25, 10}}) {
+    Square square;
+    square.hold("y_min", Friction<2>{0});
+    square.walls.finalize();
+    const std::size_t n = square.node({0.5, 0});
+    SparseRows<ProjectedNodeSum<2>> sums(square.nodes.sum.size());
+    SparseRows<ProjectedNodeMotion<2>> projected(sums.size());
+    sums[n].mass = 5, sums[n].lightest = 1;
+    sums[n].momentum = 5 * (Vec<2>(3, one.own) - Vec<2>(0, 0.25));
+    projected[n].v = {3, -2}, projected[n].change = {0, 0.25};
+    square.walls.apply(Square::kick, square.nodes, sums, projected, one.pic, square.work);
+    square.walls.keep_impulses();
+    expect_near(projected[n].v, {3, 0});
+    expect_near(projected[n].change, {0, 0.25 + 2 * one.share});
+    expect_near(square.first().impulse, {0, one.impulse});
+  }
+}
+
 TEST(NodesAtWalls, HatsAndSlavesArePushedWithTheirOwnMass)
 {
   Square square;
@@ -244,7 +269,7 @@ TEST(NodesAtWalls, HatsAndSlavesArePushedWithTheirOwnMass)
   SparseRows<ProjectedNodeMotion<2>> projected(sums.size());
   sums[n].mass = 5, sums[n].lightest = 1;
   projected[n].v = {1, 1};
-  square.walls.apply(Square::kick, square.nodes, sums, projected, square.work);
+  square.walls.apply(Square::kick, square.nodes, sums, projected, 0, square.work);
   square.walls.keep_impulses();
   expect_near(projected[n].v, {3, 1});
   expect_near(projected[n].change, {2, 0});

@@ -123,6 +123,15 @@ TEST(Transfer, DampingOfAflipFollowsTheFallOfABodyThatFlowsAndTheWaveElsewhere)
   EXPECT_EQ(given.pic_share(0.1, 0.02, true), 0.1 / 7) << "as given";
 }
 
+TEST(Transfer, SymmetricAffineFlipIsDampedWhereAStageSeeksRest)
+{
+  const TransferOptions free = TransferOptions{.scheme = Scheme::saflip}.with_damping(0.5, true);
+  EXPECT_EQ(free.pic_share(0.1, 0.02, false), 0);
+  EXPECT_EQ(free.pic_share(0.1, 0.02, true), 0.1 / (25 * 0.02));
+  const TransferOptions given = TransferOptions{.scheme = Scheme::saflip, .pic_damping_crossings = 100}.with_damping(0.5, true);
+  EXPECT_EQ(given.pic_share(0.1, 0.02, false), 0.1 / (100 * 0.02));
+}
+
 TEST(Transfer, KindsOfSchemes)
 {
   const auto of = [](Scheme scheme, bool musl) {
