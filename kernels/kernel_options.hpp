@@ -28,12 +28,11 @@ struct ProjectedOptions {
   AtSurfaces surfaces = AtSurfaces::plain;
   static constexpr auto fields()
   {
-    return std::tuple{
-        optional_choice(
-            "surfaces", &ProjectedOptions::surfaces,
-            "plain or extended (gradients beside a free surface continue the motion inside along the surface: bodies that bend are "
-            "stiffer and lose a half to a fifth of the energy, in 2.5 times the time; not for ground under its weight, whose free "
-            "surfaces then creep)")};
+    return std::tuple{optional_choice(
+        "surfaces", &ProjectedOptions::surfaces,
+        "plain or extended (gradients beside a free surface continue the motion inside along the surface: bodies that bend are "
+        "stiffer and lose a half to a fifth of the energy, in 2.5 times the time; not for ground under its weight, whose free "
+        "surfaces then creep)")};
   }
 };
 

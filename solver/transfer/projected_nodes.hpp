@@ -160,9 +160,18 @@ void project_motion(const NodeOperators<D>& operators, const Extension<D>& exten
   });
 }
 
-/// Gradients of the remapped velocities on the linear shape functions that particles use.
-template <int D, class Arrive>
-void project_gradient(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use,
+/// Velocities as they are, for gradients that are not extended at surfaces.
+struct NotExtended {
+  template <class V>
+  const V& velocity(Index, const V& v) const noexcept
+  {
+    return v;
+  }
+};
+
+/// Gradients of the remapped velocities on the linear shape functions that particles use; `extension` is Extension or NotExtended.
+template <int D, class OfSurfaces, class Arrive>
+void project_gradient(const NodeOperators<D>& operators, const OfSurfaces& extension, const NodesInUse& in_use,
                       const SparseRows<NodeMotion<D>>& remapped, Arrive&& arrive, ProjectedNodes<D>& projected,
                       SparseRows<Mat<D>>& gradients)
 {

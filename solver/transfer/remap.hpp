@@ -139,8 +139,9 @@ class Remap {
     for (Rows& of : fields_)
       of.ghosts.motion.send(nodes_of(m_, of).remapped, Whole{});
   }
-  /// Gradients of the velocities that were sent, at surfaces those of their extension.
-  void find_gradients(Rows& of, const Extension<D>& extension) requires Rows::projects
+  /// Gradients of the velocities that were sent, at surfaces those of their extension if there is one.
+  template <class OfSurfaces>
+  void find_gradients(Rows& of, const OfSurfaces& extension) requires Rows::projects
   {
     Nodes<D>& nodes = nodes_of(m_, of);
     project_gradient(
@@ -151,7 +152,7 @@ class Remap {
   void find_gradients_of_affine_fields() requires Rows::projects
   {
     for (Rows& of : fields_)
-      find_gradients(of, Extension<D>());
+      find_gradients(of, NotExtended{});
   }
   void add_affine_momentum(Index block, MomentumOf which, Real pic) requires Rows::projects
   {

@@ -50,7 +50,7 @@ TEST(Scene, ReadsChoicesOfTheProjectedKernelAndItsTransfer)
   const Scene s = scene("solid.yaml");
   EXPECT_EQ(s.kernel, "projected");
   ASSERT_TRUE(s.projected.has_value());
-  EXPECT_EQ(s.projected->alpha, 0.25);
+  EXPECT_EQ(s.projected->surfaces, AtSurfaces::extended);
   EXPECT_EQ(s.transfer.scheme, Scheme::aflip);
   EXPECT_EQ(s.transfer.pic_damping_crossings, 3);
   EXPECT_FALSE(scene("plane.yaml").projected.has_value());

@@ -67,7 +67,7 @@ TEST(Manual, TellsRequiredFromOptionalKeys)
 
 TEST(Manual, ListsTheWordsOfEnums)
 {
-  EXPECT_EQ(row("transfer", "scheme").at("range"), "`flip`, `apic`, `tpic` or `aflip`");
+  EXPECT_EQ(row("transfer", "scheme").at("range"), "`flip`, `apic`, `tpic`, `aflip` or `saflip`");
   EXPECT_THAT(row("materials", "law").at("range"), HasSubstr("`drucker_prager`"));
 }
 
@@ -138,7 +138,7 @@ TEST(Schema, KnowsKeysTypesRangesAndWords)
   EXPECT_EQ(keys.at("dimension").at("minimum"), 2);
   EXPECT_EQ(keys.at("dimension").at("maximum"), 3);
   EXPECT_EQ(keys.at("time").at("properties").at("end").at("exclusiveMinimum"), 0);
-  EXPECT_EQ(keys.at("transfer").at("properties").at("scheme").at("enum"), (nlohmann::json{"flip", "apic", "tpic", "aflip"}));
+  EXPECT_EQ(keys.at("transfer").at("properties").at("scheme").at("enum"), (nlohmann::json{"flip", "apic", "tpic", "aflip", "saflip"}));
   EXPECT_EQ(keys.at("materials").at("items").at("allOf").size(), Laws::size + LawsInLibraries::size);
   EXPECT_EQ(keys.at("loads").at("items").at("allOf").at(0).at("then").at("properties").at("type").at("const"), "gravity");
   EXPECT_EQ(keys.at("loads").at("items").at("properties").at("type").at("enum"), (nlohmann::json{"gravity", "body_force", "traction"}));
