@@ -1,7 +1,5 @@
 #include "solver/boundary/boundary_conditions.hpp"
 
-#include <algorithm>
-
 #include "solver/boundary/pushed_node.hpp"
 
 namespace talus {
@@ -250,13 +248,14 @@ void BoundaryConditions<D>::apply(const Kick& kick, const Nodes<D>& nodes, std::
     if (!sums[n].is_seen())
       continue;
     const std::uint8_t open = nodes.of_field(rule.node).open;
-    const Vec<D> change = projected[n].change;
     ProjectedNodeMotion<D> obeying = projected[n];
+    const Vec<D> change = obeying.change;
     push(rule, open, kick, 0, obeying.v, obeying.change, sliding, work);  // to see where it leads
     if (obeying.v == projected[n].v)
       continue;
     const Vec<D> pushed = obeying.change - change, own = sums[n].momentum / sums[n].mass + change;
-    const Real share = std::clamp<Real>((obeying.v - own).dot(pushed) / pushed.squaredNorm(), 0, 1);
+    const Real length = pushed.squaredNorm();  // zero where a change is lost in rounding
+    const Real share = length > 0 ? std::clamp<Real>((obeying.v - own).dot(pushed) / length, 0, 1) : 1;
     push(rule, open, kick, (share + pic * (1 - share)) * sums[n].mass, projected[n].v, projected[n].change, sliding, work);
     projected[n].change = change + share * pushed;
   }

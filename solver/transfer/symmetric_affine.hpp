@@ -10,6 +10,20 @@ namespace talus {
 /// touch, and what comes back has to be the transpose.
 inline NodeOfField without_one_sided_walls(Index node) noexcept { return {node, 0xff}; }
 
+/// The part of a change of velocity that boundary conditions leave free at a node of this mass [kg] that moves with v; the rest is their impulse.
+template <int D>
+Vec<D> leave_free(Model<D>& m, Index node, const Vec<D>& v, Real mass, const Vec<D>& change)
+{
+  if (!m.state.boundary.binds(node))
+    return change;
+  const Vec<D> kept = m.state.boundary.free_changes(without_one_sided_walls(node), v) * change;
+  if (const Vec<D> impulse = mass * (kept - change); m.problem.own.has(node) && !impulse.isZero(0)) {
+    m.state.boundary.react(node, impulse);
+    m.work.sums.beyond_nodes.add({0, 0, 0, 0, moment<D>(m.problem.mesh.node(node), impulse)});
+  }
+  return kept;
+}
+
 /// Whose momentum is summed.
 enum class MomentumOf : std::uint8_t { old_velocities, new_velocities };
 
@@ -66,8 +80,17 @@ void add_changes_to_hats(Model<D>& m, KernelRows<D, K>& of)
         Vec<D> change = Vec<D>::Zero();
         of.kernel.node_operators().for_each_in_row(
             n, [&](Index v, Real S, const Vec<D>&) { change += S * nodes.remapped[static_cast<std::size_t>(v)].v; });
-        motion.change += m.state.boundary.free_changes(without_one_sided_walls(n), motion.v) * change;
+        motion.change += change;
+        of.changes[static_cast<std::size_t>(n)].change = change;
       });
+  m.state.boundary.for_each_node([&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    if (!of.projected.sum[i].is_seen())
+      return;
+    const Vec<D> change = of.changes[i].change;
+    ProjectedNodeMotion<D>& motion = of.projected.motion[i];
+    motion.change += leave_free(m, n, motion.v, of.projected.sum[i].mass, change) - change;
+  });
 }
 
 /// Adds the moments of changes of the particles of a block to its rows.
@@ -104,12 +127,18 @@ void find_changes_of_nodes(Model<D>& m, KernelRows<D, K>& of)
   SmallMassNodes<D>& small = m.work.fields[of.field].small_mass_nodes;
   small.lump_momentum(m.problem.mesh, own, nodes);
   const auto free = [&](Index n, const Vec<D>& change) {
-    return Vec<D>(m.state.boundary.free_changes(without_one_sided_walls(n), nodes.motion[static_cast<std::size_t>(n)].v) * change);
+    const auto i = static_cast<std::size_t>(n);
+    return leave_free(m, n, nodes.motion[i].v, nodes.sum[i].mass, change);
   };
   std::vector<Vec<D>>& changes = of.changes_of_nodes;
   nodes.in_use.for_each([&](Index n) {
     const auto i = static_cast<std::size_t>(n);
-    changes[i] = nodes.active[i] ? free(n, nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
+    changes[i] = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
+  });
+  m.state.boundary.for_each_node([&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    if (nodes.active[i])
+      changes[i] = free(n, changes[i]);
   });
   small.take(m.problem.mesh, own, free, changes);
   nodes.in_use.for_each([&](Index n) {
