@@ -39,10 +39,14 @@ std::string describe(const TransferOptions& transfer)
   std::string text(enum_names(transfer.scheme)[static_cast<std::size_t>(transfer.scheme)]);
   if (transfer.uses_musl())
     text += ", musl";
+  const bool undamped = transfer.pic_damping_time && std::isinf(*transfer.pic_damping_time);
   if (transfer.pic_damping_time)
-    text += std::isinf(*transfer.pic_damping_time) ? ", undamped" : fmt::format(", damped in {:.3g} s", *transfer.pic_damping_time);
+    text += undamped ? ", undamped" : fmt::format(", damped in {:.3g} s", *transfer.pic_damping_time);
   if (transfer.pic_damping_crossings)
-    text += fmt::format("{} {:.6g} crossing times of a cell", transfer.pic_damping_time ? "; in stages that seek rest in" : ", damped in",
+    text += fmt::format("{} {:.6g} crossing times of a cell",
+                        undamped                    ? "; in stages that seek rest damped in"
+                        : transfer.pic_damping_time ? "; in stages that seek rest in"
+                                                    : ", damped in",
                         *transfer.pic_damping_crossings);
   return text;
 }

@@ -55,7 +55,8 @@ class Rules : private SceneRuleBase {
   void symmetric_transfer()
   {
     if (scene_.kernel != "projected")
-      add("transfer.scheme", fmt::format("saflip needs the node operators of the kernel projected; the scene's is {}", scene_.kernel));
+      add("transfer.scheme",
+          fmt::format("saflip is for the kernel projected, and the scene's is {}: leave `kernel` out, or take aflip", scene_.kernel));
     if (!scene_.cuts.empty())
       add("transfer.scheme", "saflip does not know the sides of cuts: take aflip");
     if (std::ranges::any_of(scene_.rigid, &RigidSpec::is_sheet))

@@ -1,5 +1,6 @@
 #pragma once
 // Data of the transfer of one kernel for a velocity field: the rows of blocks, and the data between these and the nodes.
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -81,6 +82,14 @@ template <class OfModel, int D, Kernel<D> K>
 auto& nodes_of(OfModel& m, const KernelRows<D, K>& of) noexcept
 {
   return m.work.fields[of.field].nodes;
+}
+
+/// Sends the rows of outer blocks to the owners of their nodes.
+template <class What, int D, Kernel<D> K>
+void send_rows(std::span<KernelRows<D, K>> fields)
+{
+  for (KernelRows<D, K>& of : fields)
+    of.halo.template send_rows<What>(of.blocks);
 }
 
 }  // namespace talus

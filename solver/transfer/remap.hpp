@@ -1,19 +1,9 @@
 #pragma once
 // Velocities and gradients of the nodes from momentum that particles have summed on them again: MUSL, and symmetric affine FLIP.
-#include <tuple>
-
 #include "solver/transfer/sweep.hpp"
 #include "solver/transfer/symmetric_affine.hpp"
 
 namespace talus {
-
-/// Sends the rows of outer blocks to the owners of their nodes.
-template <class What, int D, Kernel<D> K>
-void send_rows(std::span<KernelRows<D, K>> fields)
-{
-  for (KernelRows<D, K>& of : fields)
-    of.halo.template send_rows<What>(of.blocks);
-}
 
 /// Lives on the stack, within a step.
 template <int D, Kernel<D> K>

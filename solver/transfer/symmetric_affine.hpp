@@ -10,7 +10,8 @@ namespace talus {
 /// touch, and what comes back has to be the transpose.
 inline NodeOfField without_one_sided_walls(Index node) noexcept { return {node, 0xff}; }
 
-/// The part of a change of velocity that boundary conditions leave free at a node of this mass [kg] that moves with v; the rest is their impulse.
+/// The part of a change of velocity that boundary conditions leave free at a node of this mass [kg] that moves with v; the rest is their impulse, which
+/// does work where they move.
 template <int D>
 Vec<D> leave_free(Model<D>& m, Index node, const Vec<D>& v, Real mass, const Vec<D>& change)
 {
@@ -19,7 +20,7 @@ Vec<D> leave_free(Model<D>& m, Index node, const Vec<D>& v, Real mass, const Vec
   const Vec<D> kept = m.state.boundary.free_changes(without_one_sided_walls(node), v) * change;
   if (const Vec<D> impulse = mass * (kept - change); m.problem.own.has(node) && !impulse.isZero(0)) {
     m.state.boundary.react(node, impulse);
-    m.work.sums.beyond_nodes.add({0, 0, 0, 0, moment<D>(m.problem.mesh.node(node), impulse)});
+    m.work.sums.beyond_nodes.add({0, impulse.dot(v), 0, 0, moment<D>(m.problem.mesh.node(node), impulse)});
   }
   return kept;
 }

@@ -114,10 +114,8 @@ std::vector<std::string> advice_on_kernel(const Scene& scene, const KernelUse& u
   if (!use.flows && use.moves && bodies_may_meet(scene)) {
     if (transfer.scheme == Scheme::aflip && scene.kernel == "projected")
       advice.emplace_back(
-          "aflip damps the vibration that an impact leaves (benchmarks/colliding_disks: 6 to 12 % of the energy, saflip 0.4 to 0.9 %); if "
-          "it "
-          "matters, take "
-          "transfer: {scheme: saflip}");
+          "aflip damps the vibration that an impact leaves (benchmarks/colliding_disks: 6 to 12 % of the energy, saflip 0.4 to 0.9 %); "
+          "if it matters, take transfer: {scheme: saflip}");
     if (scene.contacts.empty())
       advice.emplace_back(
           "bodies without `contacts` share velocities and meet up to a cell and a half early (benchmarks/colliding_disks); with them they "

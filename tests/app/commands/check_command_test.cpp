@@ -191,6 +191,8 @@ TEST_F(Check, TellsTheDampingOfTheTransferWhichFollowsTheFallWhereABodyFlows)
                                     "crossing times of a cell,",
                                     std::sqrt(0.25 / std::sqrt(2.0) / 10))));
   EXPECT_THAT(talus("check elastic.yaml").out, HasSubstr("transfer aflip, musl, damped in 25 crossing times of a cell,"));
+  EXPECT_THAT(talus("check elastic.yaml --set transfer.scheme=saflip").out,
+              HasSubstr("transfer saflip, musl, undamped; in stages that seek rest damped in 25 crossing times of a cell,"));
 }
 
 TEST_F(Check, NotesAFixedFloorOverWhichSoilMayFlowOut)
