@@ -6,8 +6,9 @@ namespace talus {
 
 namespace {
 
-/// Candidates are nodes nearer than this to a body, in mean edges: particles within two rings may touch it.
-constexpr Real nearness = 3;
+/// Nodes farther than this in front of a body exchange no impulses with it, in mean edges.  What moves with a body acts as a part of it, so the
+/// value is small; below two thirds, a particle that touches can be in a cell of which no node near the particle takes part.
+constexpr Real nearness = 0.7;
 
 }  // namespace
 

@@ -48,9 +48,9 @@ struct RigidNode {
 /// Finds in every step where material touches rigid bodies, and exchanges impulses there.
 ///
 /// **Where.**  A particle touches a body if the distance of its centre from the surface is at most its half width along the normal there,
-/// |F^T n| V0^(1/D) / 2.  A node touches if a particle within two rings of cells does whose normal passes it by half a mean edge at most.
-/// Normal and place of contact are those of the particle that reaches deepest.  A sheet acts on the nodes that it parts: on each field from
-/// the side of its particles, wherever their centres are.
+/// |F^T n| V0^(1/D) / 2.  A node touches if it is at most 0.7 mean edges in front of the surface, and if a particle within two rings of cells
+/// does whose normal passes the node by half a mean edge at most.  Normal and place of contact are those of the particle that reaches deepest.
+/// A sheet acts on the nodes that it parts: on each field from the side of its particles, wherever their centres are.
 ///
 /// **Impulse.**  Where both approach, the material at the node gets the normal velocity of the body at the place of contact (a plastic
 /// impact), and the tangential one unless friction carries less.  The velocity of a free body after the step is the solution of its

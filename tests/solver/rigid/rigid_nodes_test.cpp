@@ -95,6 +95,18 @@ TYPED_TEST(RigidIn, NothingIsFeltAcrossAGapAndNothingAttracts)
   EXPECT_EQ(parting.state.rigid[0].done.impulse, (Vec<D>(Vec<D>::Zero())));
 }
 
+// What exchanges impulses moves with the ball as a part of it, so nodes farther ahead make the ball larger than it is.
+TYPED_TEST(RigidIn, OnlyNodesBesideItsSurfaceMoveWithABall)
+{
+  constexpr int D = TypeParam::D;
+  auto m = block_and_ball<TypeParam>(along<D>(D - 1, 0.5), along<D>(D - 1, -1), 50, 0.3);
+  make_step(m, 1e-6);
+  EXPECT_FALSE(m.work.rigid.nodes().empty());
+  for (const RigidNode<D>& at : m.work.rigid.nodes())
+    EXPECT_LE((m.problem.mesh.node(at.node) - m.state.rigid[0].x).norm() - 0.25, 0.7 * m.problem.mesh.node_size(at.node) * (1 + 1e-12));
+  end_sweeps(m);
+}
+
 TYPED_TEST(RigidIn, FrictionIsAtMostItsCoefficientTimesThePressure)
 {
   constexpr int D = TypeParam::D;
