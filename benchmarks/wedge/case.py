@@ -4,7 +4,8 @@ import numpy as np
 import lab as tools
 
 CASE = "wedge"
-SIZES = {0.1: "quick", 0.05: "full"}  # m: 7 and 14 cells over the depth at the end
+RUNS = {(0.1, 0): "quick", (0.1, 0.03): "full", (0.1, 0.07): "full", (0.05, 0): "full"}  # m: 7 and 14 cells over the depth at the end; how much the room is
+# higher than that of the scene, with which gmsh makes other triangles
 DEPTHS = (0.35, 0.7)  # m
 WIDTH = 0.03  # m of depth over which forces are averaged
 
@@ -26,15 +27,20 @@ def depth_and_force(run):
     return history["rigid_wedge_y"][0] - history["rigid_wedge_y"], history["rigid_wedge_fy"]
 
 
-def judge(size, run, data):
+def name_of(size, higher):
+    """What a run is called in results."""
+    return f"cells of {size} m" + (f", room higher by {higher} m" if higher else "")
+
+
+def judge(name, run, data):
     """Force at two depths and its growth between them."""
     depth, force = depth_and_force(run)
-    results = [tools.Result(CASE, f"force over that of slip lines, cells of {size} m, depth {at} m", "-",
+    results = [tools.Result(CASE, f"force over that of slip lines, {name}, depth {at} m", "-",
                             float(force[abs(depth - at) < WIDTH].mean() / slip_line_force(at, data)), "within", data["slack"], 1.0, data["source"], run)
                for at in DEPTHS]
     between = depth > DEPTHS[0]
     growth = np.polyfit(depth[between], force[between], 1)[0] / slip_line_force(1, data)
-    return results + [tools.Result(CASE, f"growth of the force with depth over that of slip lines, cells of {size} m", "-", float(growth), "within",
+    return results + [tools.Result(CASE, f"growth of the force with depth over that of slip lines, {name}", "-", float(growth), "within",
                                    data["slack"], 1.0, data["source"], run)]
 
 
@@ -43,9 +49,9 @@ def draw(figure, runs, data):
     axis = figure.subplots()
     end = DEPTHS[-1]
     axis.plot([0, end], [0, slip_line_force(end, data) / 1000], "k", label="slip lines")
-    for size, run in runs.items():
+    for at, run in runs.items():
         depth, force = depth_and_force(run)
-        axis.plot(depth, force / 1000, label=f"talus, cells of {size} m")
+        axis.plot(depth, force / 1000, label=f"talus, {name_of(*at)}")
     axis.set(xlabel="depth of the edge [m]", ylabel="force on half of the wedge [kN/m]")
     axis.legend()
 
@@ -53,7 +59,7 @@ def draw(figure, runs, data):
 def evaluate(lab):
     """Results of a wedge."""
     data = tools.reference(CASE)
-    runs = {size: lab.run(f"{CASE}/scene.yaml", tools.label(f"wedge_{size}"), {"mesh.size": size})
-            for size, level in SIZES.items() if level == "quick" or lab.level == "full"}
+    runs = {(size, higher): lab.run(f"{CASE}/scene.yaml", tools.label(f"wedge_{size}_{higher}"), {"mesh.size": size, "mesh.regions[0].shape.high": [5, 4.5 + higher]})
+            for (size, higher), level in RUNS.items() if level == "quick" or lab.level == "full"}
     lab.figure(CASE, "verification_wedge", lambda figure: draw(figure, runs, data), caption="Force on a wedge that is pushed into clay.")
-    return [result for size, run in runs.items() for result in judge(size, run, data)]
+    return [result for at, run in runs.items() for result in judge(name_of(*at), run, data)]
