@@ -5,8 +5,8 @@ import lab as tools
 
 CASE = "rigid_bodies"
 CONTACT = tools.module("contact")  # the same inclines
-FOOTINGS = ((0.5, 0), (0.5, 0.1), (0.5, 0.23), (0.25, 0), (0.25, 0.1), (0.25, 0.23))  # m, at full level: sizes of cells, and how much the room is higher than
-# that of the scene, with which gmsh makes other triangles
+# At full level: sizes of cells [m], and how much the room is higher than that of the scene [m], with which gmsh makes other triangles.
+FOOTINGS = ((0.5, 0), (0.5, 0.1), (0.5, 0.23), (0.25, 0), (0.25, 0.1), (0.25, 0.23))
 DAMS = {0.4: "quick", 0.2: "quick", 0.1: "full", 0.07: "full"}  # m, sizes of cells: 2.5, 5, 10 and 14 over the radius of the boulder
 WALLS = (0, 0.1, 0.2, 0.28, 0.29, 1)
 
