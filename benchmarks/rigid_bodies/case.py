@@ -1,4 +1,4 @@
-"""Rigid bodies: a sphere on an inclined wall, a disk that rolls or slides down an inclined body of particles, a strip pushed into clay, a boulder that hits a dam."""
+"""Rigid bodies: a sphere on an inclined wall, a disk that rolls or slides down an inclined body of particles, a strip and a circle pushed into clay, a boulder that hits a dam."""
 import numpy as np
 
 import lab as tools
@@ -7,6 +7,7 @@ CASE = "rigid_bodies"
 CONTACT = tools.module("contact")  # the same inclines
 # At full level: sizes of cells [m], and how much the room is higher than that of the scene [m], with which gmsh makes other triangles.
 FOOTINGS = ((0.5, 0), (0.5, 0.1), (0.5, 0.23), (0.25, 0), (0.25, 0.1), (0.25, 0.23))
+CIRCLES = (0.5,)  # m, at full level: sizes of cells
 DAMS = {0.4: "quick", 0.2: "quick", 0.1: "full", 0.07: "full"}  # m, sizes of cells: 2.5, 5, 10 and 14 over the radius of the boulder
 WALLS = (0, 0.1, 0.2, 0.28, 0.29, 1)
 
@@ -19,6 +20,11 @@ def on_wall(lab, friction):
 def footing(lab, size, higher):
     """Starts a run of the strip."""
     return lab.run(f"{CASE}/scene_footing.yaml", f"footing_{size}_{higher}", {"mesh.size": size, "mesh.regions[0].shape.high": [20, 11.2 + higher]})
+
+
+def circle(lab, size):
+    """Starts a run of the circle."""
+    return lab.run(f"{CASE}/scene_circle.yaml", f"circle_{size}", {"mesh.size": size})
 
 
 def start_dams(lab):
@@ -63,6 +69,14 @@ def judge_footing(size, higher, run, data):
                          data["footing source"], run),
             tools.Result(CASE, f"the same, for a strip wider by half a cell on each side, {name}", "-", float(wider), "reported", None, 2 + np.pi,
                          data["footing source"], run)]
+
+
+def judge_circle(size, run, data):
+    """The mean load over the last fifth of the settlement, on a quarter of the circle."""
+    history = run.history
+    load = history["rigid_disk_fz"][-len(history["time"]) // 5:].mean() / (np.pi / 4 * data["radius of the circle [m]"]**2 * data["strength [Pa]"])
+    return tools.Result(CASE, f"load of a circle over area and strength, 3-D, cells of {size} m", "-", float(load), "within", data["footing slack"],
+                        data["circle"], data["circle source"], run)
 
 
 def impulse(history, column):
@@ -123,15 +137,17 @@ def of_kernel(lab, data):
 
 
 def evaluate(lab):
-    """Results of spheres on a wall, of disks on a body, of strips and of boulders."""
+    """Results of spheres on a wall, of disks on a body, of strips, of circles and of boulders."""
     data = tools.reference(CASE)
     walls = {friction: on_wall(lab, friction) for friction in WALLS}
     runs = CONTACT.runs_down(lab, CASE, "rigid[0].friction", data)
     footings = {at: footing(lab, *at) for at in FOOTINGS if lab.level == "full"}
+    circles = {size: circle(lab, size) for size in CIRCLES if lab.level == "full"}
     dams = start_dams(lab)
     results = [judge_wall(friction, run, data) for friction, run in walls.items()]
     for at, run in footings.items():
         results += judge_footing(*at, run, data)
+    results += [judge_circle(size, run, data) for size, run in circles.items()]
     for (name, size, place), run in runs.items():
         results += judge_body(name, size, place, run, data)
     for size, run in dams.items():
