@@ -1,10 +1,14 @@
-"""Loads on sides of bodies that cut cells: pressed square and cube, sheared square, disk in water."""
+"""Surfaces that cut cells, under loads or free: pressed square and cube, sheared square, disk in water, hanging bar."""
 import numpy as np
 
 import lab as tools
 
 CASE = "loaded_surface"
 PLACES = (1, 1.04, 1.08)  # factors of the cell size: the end lies elsewhere in its cells
+
+# Hanging bar: sizes of cells [m], and how much the room is higher than that of the scene [m], with which gmsh makes other triangles.
+HANGING = {(0.25, 0): "full", (0.25, 0.03): "full", (0.25, 0.06): "full", (0.125, 0): "quick", (0.125, 0.03): "full", (0.125, 0.06): "full",
+           (0.0625, 0.013): "full", (0.0625, 0.03): "full", (0.0625, 0.06): "full"}
 
 
 def error(run, wrong, share=1):
@@ -38,6 +42,25 @@ def in_water(data):
         stress = frame["stress"][:, [0, 1, 3]] + pressure[:, None] * np.array([1, 1, 0])
         return np.linalg.norm(stress, axis=1) / (data["weight of water [N/m^3]"] * data["height [m]"])
     return wrong
+
+
+def hanging_results(lab, data):
+    """The hanging bar: errors of the stress over the exact one at the same place, in the two cells next to the free side and below, away from the ends."""
+    own, results = data["hanging"], []
+    runs = {(size, higher): lab.run(f"{CASE}/scene_hanging.yaml", f"hanging_{size}_{higher}", {"mesh.size": size, "mesh.regions[0].shape.high": [4.6, 1.45 + higher]})
+            for (size, higher), level in HANGING.items() if level == "quick" or lab.level == "full"}
+    for (size, higher), run in runs.items():
+        frame = run.last_frame()
+        x, y = frame["position"][:, 0], frame["position"][:, 1]
+        exact = own["weight [N/m^3]"] * (own["length [m]"] - x)
+        wrong = np.hypot(np.hypot(frame["stress"][:, 0] - exact, frame["stress"][:, 1]), np.sqrt(2) * frame["stress"][:, 3]) / exact
+        middle, top = (x > own["from [m]"]) & (x < own["to [m]"]), y > own["height [m]"] - 2 * size
+        name = f"hanging bar, cells of {size} m" + (f", room higher by {higher} m" if higher else "")
+        results += [tools.Result(CASE, f"stress error, rms, two cells at the free side, {name}", "-", tools.rms(wrong[middle & top]), "at most", own["largest error"], 0.0,
+                                 own["source"], run),
+                    tools.Result(CASE, f"largest stress error, two cells at the free side, {name}", "-", float(wrong[middle & top].max()), "reported", None, 0.0, own["source"], run),
+                    tools.Result(CASE, f"stress error, rms, below these cells, {name}", "-", tools.rms(wrong[middle & ~top]), "reported", None, 0.0, own["source"], run)]
+    return results
 
 
 def evaluate(lab):
@@ -78,6 +101,7 @@ def evaluate(lab):
         if scene == "water":
             add(f"displacement of the disk, cells of {size} m", float(np.linalg.norm(np.average(run.last_frame()["displacement"], axis=0, weights=run.last_frame()["mass"]))),
                 "reported", None, run, "m")
+    results += hanging_results(lab, data)
     lab.figure(CASE, "verification_loaded_surface", lambda figure: tools.draw_pressing_stress(figure, {"load on facets": square["facets", sizes[1]][0], "load on the side": square["side", sizes[1]][0]}, data),
                size=(9.6, 3.2), caption="Square pressed on its right end by a third of its modulus: stress of the particles over the exact one, which is uniform.")
     return results
