@@ -322,6 +322,11 @@ def overridden(settings, overrides):
     return {**{key: word for key, word in overrides.items() if key not in settings and key.split(".")[0] not in settings}, **settings}
 
 
+def mesh_name(size, higher):
+    """What results with cells of `size` [m] are called, where the room is `higher` [m] than that of the scene, so that gmsh makes other triangles."""
+    return f"cells of {size} m" + (f", room higher by {higher} m" if higher else "")
+
+
 def plain(value):
     """A number of numpy as a Python number, or None if it is not finite: JSON has neither."""
     if isinstance(value, (float, np.floating)):

@@ -55,7 +55,7 @@ def hanging_results(lab, data):
         exact = own["weight [N/m^3]"] * (own["length [m]"] - x)
         wrong = np.hypot(np.hypot(frame["stress"][:, 0] - exact, frame["stress"][:, 1]), np.sqrt(2) * frame["stress"][:, 3]) / exact
         middle, top = (x > own["from [m]"]) & (x < own["to [m]"]), y > own["height [m]"] - 2 * size
-        name = f"hanging bar, cells of {size} m" + (f", room higher by {higher} m" if higher else "")
+        name = f"hanging bar, {tools.mesh_name(size, higher)}"
         results += [tools.Result(CASE, f"stress error, rms, two cells at the free side, {name}", "-", tools.rms(wrong[middle & top]), "at most", own["largest error"], 0.0,
                                  own["source"], run),
                     tools.Result(CASE, f"largest stress error, two cells at the free side, {name}", "-", float(wrong[middle & top].max()), "reported", None, 0.0, own["source"], run),

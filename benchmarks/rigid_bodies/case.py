@@ -62,7 +62,7 @@ def judge_body(name, size, place, run, data):
 
 def judge_footing(size, higher, run, data):
     """The mean load over the last tenth of the settlement, on half of the strip."""
-    history, name = run.history, f"cells of {size} m" + (f", room higher by {higher} m" if higher else "")
+    history, name = run.history, tools.mesh_name(size, higher)
     load = history["rigid_strip_fy"][-len(history["time"]) // 10:].mean() / (data["half width [m]"] * data["strength [Pa]"])
     wider = load * data["half width [m]"] / (data["half width [m]"] + size / 2)
     return [tools.Result(CASE, f"load of a strip over half width and strength, {name}", "-", float(load), "within", data["footing slack"], 2 + np.pi,

@@ -27,11 +27,6 @@ def depth_and_force(run):
     return history["rigid_wedge_y"][0] - history["rigid_wedge_y"], history["rigid_wedge_fy"]
 
 
-def name_of(size, higher):
-    """What a run is called in results."""
-    return f"cells of {size} m" + (f", room higher by {higher} m" if higher else "")
-
-
 def judge(name, run, data):
     """Force at two depths and its growth between them."""
     depth, force = depth_and_force(run)
@@ -51,7 +46,7 @@ def draw(figure, runs, data):
     axis.plot([0, end], [0, slip_line_force(end, data) / 1000], "k", label="slip lines")
     for at, run in runs.items():
         depth, force = depth_and_force(run)
-        axis.plot(depth, force / 1000, label=f"talus, {name_of(*at)}")
+        axis.plot(depth, force / 1000, label=f"talus, {tools.mesh_name(*at)}")
     axis.set(xlabel="depth of the edge [m]", ylabel="force on half of the wedge [kN/m]")
     axis.legend()
 
@@ -65,7 +60,7 @@ def of_kernel(lab, data):
     """Starts the coarse wedge with another kernel, with what measures it."""
     at = next(iter(RUNS))
     run = start(lab, *at)
-    return [(run, lambda: judge(name_of(*at), run, data))]
+    return [(run, lambda: judge(tools.mesh_name(*at), run, data))]
 
 
 def evaluate(lab):
@@ -73,4 +68,4 @@ def evaluate(lab):
     data = tools.reference(CASE)
     runs = {at: start(lab, *at) for at, level in RUNS.items() if level == "quick" or lab.level == "full"}
     lab.figure(CASE, "verification_wedge", lambda figure: draw(figure, runs, data), caption="Force on a wedge that is pushed into clay.")
-    return [result for at, run in runs.items() for result in judge(name_of(*at), run, data)] + tools.with_other_kernels(lab, lambda other: of_kernel(other, data))
+    return [result for at, run in runs.items() for result in judge(tools.mesh_name(*at), run, data)] + tools.with_other_kernels(lab, lambda other: of_kernel(other, data))
