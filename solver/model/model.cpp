@@ -242,13 +242,26 @@ void begin_sweeps(Model<D>& m)
   m.transfer->sum_strips(m);
 }
 
+/// What computes velocity gradients and affine fields of particles from the motion that nodes have from the last step.
+template <int D>
+FindGradients<D> gradients_from_nodes(Model<D>& m)
+{
+  return [&m](std::size_t key, Index strip, StripColumns<D>& columns) { m.transfer->find_gradients(m, key, strip, columns); };
+}
+
 template <int D>
 void copy_to_columns(Model<D>& m)
 {
   if (m.work.strips && m.state.particles.id.empty())
-    m.work.strips->store(
-        m.state.bodies, m.state.materials, m.state.particles, m.work.order,
-        [&m](std::size_t key, Index strip, StripColumns<D>& columns) { m.transfer->find_gradients(m, key, strip, columns); });
+    m.work.strips->store(m.state.bodies, m.state.materials, m.state.particles, m.work.order, gradients_from_nodes(m));
+}
+
+template <int D>
+FindGradients<D> affine_fields(Model<D>& m)
+{
+  const TransferOptions& transfer = m.problem.transfer;
+  const bool has = transfer.own_affine_field() || (transfer.affine() && m.work.strips->layout().kept_gradients() > 0);
+  return has ? gradients_from_nodes(m) : FindGradients<D>{};
 }
 
 template <int D>
@@ -304,6 +317,7 @@ Totals<D> totals(const Model<D>& m)
   template void end_sweeps(Model<D>&);                                                   \
   template void copy_to_columns(Model<D>&);                                              \
   template void drop_copy(Model<D>&);                                                    \
+  template FindGradients<D> affine_fields(Model<D>&);                                    \
   template std::optional<ParticleCopy<D>> take_copy(Model<D>&);                          \
   template Totals<D> totals(const Model<D>&);
 TALUS_INSTANTIATE(2)

@@ -58,6 +58,10 @@ template <int D>
 void copy_to_columns(Model<D>& m);
 template <int D>
 void drop_copy(Model<D>& m);
+/// What computes the affine fields of particles from the motion that nodes have from the step before; empty where particles carry none that
+/// follows from this motion alone: with `flip` and `saflip`, and with `tpic` and node operators, whose gradients are those of materials.
+template <int D>
+FindGradients<D> affine_fields(Model<D>& m);
 /// Particles that later steps do not change.
 template <int D>
 struct ParticleCopy {

@@ -61,7 +61,7 @@ TwistSlope<D> inertia_of(const RigidBody<D>& body, const RigidState<D>& state)
 /// A mass at a node beside a rigid body.
 template <int D>
 struct Mass {
-  Vec<D> v;                          ///< [m/s]
+  Vec<D> v;                          ///< at the place of contact [m/s]
   Real along_normal, along_tangent;  ///< what resists an impulse [kg]; zero where a boundary condition holds it: nothing is exchanged there
 };
 
@@ -140,12 +140,12 @@ void RigidNodes<D>::act(const Kick& kick, Communicator& ranks, const RigidScene<
     for (const RigidNode<D>& at : touching) {
       const Nodes<D>& nodes = fields[static_cast<std::size_t>(at.field)].nodes;
       const auto n = static_cast<std::size_t>(at.node);
-      const Vec<D> v = nodes.motion[n].v, relative = v - state.velocity_at(at.touch.place);
+      const Vec<D> v = nodes.motion[n].v, at_place = v - at.offset, relative = at_place - state.velocity_at(at.touch.place);
       const Vec<D> sliding = relative - relative.dot(at.touch.normal) * at.touch.normal;
       const auto along = [&](const Vec<D>& push) {
         return resistance(conditions, nodes.of_field(at.node), kick.to, nodes.sum[n].mass, v, push);
       };
-      masses.push_back({v, along(at.touch.normal * std::max(relative.norm(), Real{1e-12})), along(-sliding)});
+      masses.push_back({at_place, along(at.touch.normal * std::max(relative.norm(), Real{1e-12})), along(-sliding)});
     }
     const auto by_node = [&](std::size_t k, const Twist<D>& q) {
       const Vec<D> arm = touching[k].touch.place - state.x;
@@ -223,7 +223,7 @@ void RigidNodes<D>::hold(Real time, const BoundaryConditions<D>& conditions, std
       remapped.v = remapped.change;
       continue;
     }
-    const Vec<D> u = states[static_cast<std::size_t>(at.rigid)].velocity_at(at.touch.place), relative = remapped.v - u;
+    const Vec<D> u = states[static_cast<std::size_t>(at.rigid)].velocity_at(at.touch.place) + at.offset, relative = remapped.v - u;
     if (const Real approach = -relative.dot(at.touch.normal); approach > 0)
       remapped.v = conditions.held(nodes.of_field(at.node), time, at.sticks ? u : Vec<D>(remapped.v + approach * at.touch.normal));
   }
@@ -239,9 +239,9 @@ void RigidNodes<D>::add_sums(const Mesh<D>& mesh, std::span<const RigidState<D>>
     const RigidState<D>& state = states[static_cast<std::size_t>(at.rigid)];
     const NodeMotion<D>& motion = fields[static_cast<std::size_t>(at.field)].nodes.motion[static_cast<std::size_t>(at.node)];
     const Vec<D> relative = motion.v - 0.5 * motion.change - at.u, impulse = at.pressed + at.rubbed;
-    sums[static_cast<std::size_t>(at.rigid)].add({impulse, moment<D>(mesh.node(at.node), impulse),
-                                                  moment<D>(at.touch.place - state.x, impulse), impulse.dot(at.u), at.pressed.dot(relative),
-                                                  at.rubbed.dot(relative)});
+    sums[static_cast<std::size_t>(at.rigid)].add(
+        {impulse, moment<D>(mesh.node(at.node), impulse), moment<D>(at.touch.place - state.x, impulse), impulse.dot(at.u),
+         at.pressed.dot(relative) + at.rubbed.dot(at.offset), at.rubbed.dot(relative - at.offset)});
   }
 }
 

@@ -18,6 +18,7 @@ struct Touch {
   Real gap = std::numeric_limits<Real>::infinity();  ///< between both surfaces [m], <= 0; infinite where nothing touches
   Vec<D> normal = Vec<D>::Zero();                    ///< out of the rigid body, unit length
   Vec<D> place = Vec<D>::Zero();                     ///< on its surface [m]
+  Mat<D> gradient = Mat<D>::Zero();                  ///< affine field of the particle, zero where particles carry none [1/s]
   bool is_seen() const noexcept { return gap <= 0; }
   /// The deeper one of two; of equally deep ones that with the smaller coordinates of place, then of normal, so that their order does not matter.
   friend bool operator<(const Touch& a, const Touch& b) noexcept
@@ -30,7 +31,7 @@ struct Touch {
   template <class Self>
   static auto parts(Self& self) noexcept
   {
-    return std::tie(self.gap, self.normal, self.place);
+    return std::tie(self.gap, self.normal, self.place, self.gradient);
   }
 };
 
@@ -38,8 +39,9 @@ struct Touch {
 template <int D>
 struct RigidNode {
   Index rigid, field, node;
-  Touch<D> touch;                   ///< the deepest one beside it
-  bool sticks = false;              ///< whether the material has the velocity of the rigid body in this step
+  Touch<D> touch;                  ///< the deepest one beside it
+  Vec<D> offset = Vec<D>::Zero();  ///< by how much the velocity of the material at the node differs from that at the place of contact [m/s]
+  bool sticks = false;             ///< whether the material has the velocity of the rigid body in this step
   Vec<D> pressed = Vec<D>::Zero();  ///< impulse on the material along the normal in this step [N s]
   Vec<D> rubbed = Vec<D>::Zero();   ///< across it
   Vec<D> u = Vec<D>::Zero();        ///< mean velocity of the rigid body there while impulses act in this step [m/s]
@@ -52,8 +54,9 @@ struct RigidNode {
 /// does whose normal passes the node by half a mean edge at most.  Normal and place of contact are those of the particle that reaches deepest.
 /// A sheet acts on the nodes that it parts: on each field from the side of its particles, wherever their centres are.
 ///
-/// **Impulse.**  Where both approach, the material at the node gets the normal velocity of the body at the place of contact (a plastic
-/// impact), and the tangential one unless friction carries less.  The velocity of a free body after the step is the solution of its
+/// **Impulse.**  The velocity of the material at the place of contact c is v_n - C (x_n - c), with the affine field C of the particle that
+/// reaches deepest.  Where it approaches the body, it gets the normal velocity of the body there (a plastic impact), and the tangential one
+/// unless friction carries less.  The velocity of a free body after the step is the solution of its
 /// equations of motion with all these impulses, so that a light body between heavy nodes is stable; Newton's method finds it, with exact sums
 /// over the nodes of all ranks.
 template <int D>
@@ -64,9 +67,11 @@ class RigidNodes {
              const std::vector<std::vector<Index>>& groups_of_field);
   bool any() const noexcept { return n_bodies_ > 0; }
 
-  /// Finds the nodes that touch.  Collective.
+  /// Finds the nodes that touch.  `find_gradients` reads what nodes have from the step before; empty where particles carry no affine field.
+  /// Collective.
   void find(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips, const RigidScene<D>& scene,
-            std::span<const RigidState<D>> states, const Sheets<D>& sheets, std::span<const VelocityField<D>> fields);
+            std::span<const RigidState<D>> states, const Sheets<D>& sheets, std::span<const VelocityField<D>> fields,
+            const FindGradients<D>& find_gradients);
   /// Exchanges impulses between the new velocities of nodes and bodies.  Boundary conditions act on nodes that change.  Collective.
   void act(const Kick& kick, Communicator& ranks, const RigidScene<D>& scene, BoundaryConditions<D>& conditions,
            std::span<RigidState<D>> states, std::span<VelocityField<D>> fields, ExactSums<BoundaryWork>& work);
@@ -88,6 +93,7 @@ class RigidNodes {
     Index rigid;
     const Sheets<D>& sheets;
     std::size_t field;
+    const FindGradients<D>& find_gradients;
     bool acts_on(Index node) const noexcept
     {
       return !shape.is_sheet() || (sheets.nearest(node) == rigid && sheets.is_parted(field, node));

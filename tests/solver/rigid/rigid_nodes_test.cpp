@@ -12,12 +12,13 @@ TYPED_TEST_SUITE(RigidIn, ContactKinds);
 
 /// A block that ends half way up, and a ball of this mass whose lowest point is `gap` above it.
 template <class S>
-Model<S::D> block_and_ball(const Vec<S::D>& v_block, const Vec<S::D>& v_ball, Real mass, Real friction, Real gap = 0)
+Model<S::D> block_and_ball(const Vec<S::D>& v_block, const Vec<S::D>& v_ball, Real mass, Real friction, Real gap = 0,
+                           Scheme scheme = Scheme::flip)
 {
   constexpr int D = S::D;
   constexpr Index n = D == 2 ? 12 : 8;
   auto m = make_model<typename S::Kernel>(unit_box<D>(n, 0));
-  m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  m.problem.transfer = {.scheme = scheme, .musl = scheme != Scheme::flip, .pic_damping_time = {}, .pic_damping_crossings = {}};
   const auto within = [&](const Vec<D>& x) { return (x.template head<D - 1>().array() - 0.5).abs().maxCoeff() < 0.375; };
   add_body<D>(
       m, "block", rubber(1e4, 0.3, 1000), 4, [&](const Vec<D>& x) { return within(x) && x[D - 1] > 0.1 && x[D - 1] < 0.5; },
@@ -105,6 +106,24 @@ TYPED_TEST(RigidIn, OnlyNodesBesideItsSurfaceMoveWithABall)
   for (const RigidNode<D>& at : m.work.rigid.nodes())
     EXPECT_LE((m.problem.mesh.node(at.node) - m.state.rigid[0].x).norm() - 0.25, 0.7 * m.problem.mesh.node_size(at.node) * (1 + 1e-12));
   end_sweeps(m);
+}
+
+// The block is drawn out: it moves faster towards the ball the farther below it is, and at its upper side it is at rest as the ball.
+TYPED_TEST(RigidIn, VelocitiesAreComparedAtThePlaceOfContact)
+{
+  constexpr int D = TypeParam::D;
+  const auto impulse = [](Real carried) {
+    auto m = block_and_ball<TypeParam>(Vec<D>(Vec<D>::Zero()), Vec<D>(Vec<D>::Zero()), 50, 0, 0, Scheme::aflip);
+    Mat<D> A = Mat<D>::Zero();
+    A(D - 1, D - 1) = -1;
+    set_velocity<D>(m, carried * A, Vec<D>(Vec<D>::Zero()));
+    for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+      m.state.particles.v.set(p, A * (m.state.particles.x[p] - along<D>(D - 1, 0.5)));
+    advance(m, 1e-6);
+    return -m.state.rigid[0].done.impulse[D - 1];
+  };
+  EXPECT_GT(impulse(0), 0);
+  EXPECT_LT(impulse(1), 0.4 * impulse(0));
 }
 
 TYPED_TEST(RigidIn, FrictionIsAtMostItsCoefficientTimesThePressure)
