@@ -8,6 +8,7 @@ SIZES = [2.0, 1.5, 1.0, 0.7]  # m, cells
 ENDS = [110.3, 110.6]  # m, of the level ground: gmsh makes other triangles
 MESHES_AT = [2.0, 1.5]  # m, cells of the meshes that end there
 MOST = 3.0  # m, asked: difference of the toes
+KINDS = {"projected": ("projected", "aflip"), "umls": ("umls", "tpic"), "umls with aflip": ("umls", "aflip")}  # kernel and transfer
 
 
 def polygons(end):
@@ -28,20 +29,21 @@ def moved_front(frame):
 
 def evaluate(lab, case, softening, toe, spacing):
     """Results of the toe and of the front of 99.5 % of the mass, and the differences of the toes of each kernel and of all runs."""
-    variants = {(kernel, size, 110.0): {} for kernel in ("projected", "umls") for size in SIZES}
+    variants = {(kind, size, 110.0): {} for kind in KINDS for size in SIZES}
     variants |= {("projected", size, end): polygons(end) for size in MESHES_AT for end in ENDS}
-    runs = {key: lab.run(f"{case}/scene.yaml", f"length_{key[0]}_{key[1]}_{key[2]}", {
-        **softening, "materials[0].softening_length": LENGTH, "mesh.size": key[1], "kernel": key[0], "transfer.scheme": tools.SUITED[key[0]], **changes})
+    runs = {key: lab.run(f"{case}/scene.yaml", tools.label(f"length_{key[0]}_{key[1]}_{key[2]}"), {
+        **softening, "materials[0].softening_length": LENGTH, "mesh.size": key[1], "kernel": KINDS[key[0]][0], "transfer.scheme": KINDS[key[0]][1], **changes})
         for key, changes in variants.items()}
     results, toes = [], {}
-    for (kernel, size, end), run in runs.items():
+    for (kind, size, end), run in runs.items():
         frame = run.last_frame()
-        toes[kernel, size, end] = toe(frame, spacing(run))
-        name = f"softening over a length, {kernel}, cells of {size} m" + (f", ground up to {end} m" if end != 110.0 else "")
-        results += [tools.Result(case, f"toe of the debris, {name}", "m", toes[kernel, size, end], "reported", None, None, "", run),
+        toes[kind, size, end] = toe(frame, spacing(run))
+        name = f"softening over a length, {kind}, cells of {size} m" + (f", ground up to {end} m" if end != 110.0 else "")
+        results += [tools.Result(case, f"toe of the debris, {name}", "m", toes[kind, size, end], "reported", None, None, "", run),
                     tools.Result(case, f"front of 99.5 % of the mass, {name}", "m", moved_front(frame), "reported", None, None, "", run)]
-    for kernel in ("projected", "umls", ""):
-        of_kernel = [value for key, value in toes.items() if key[0] == kernel or not kernel]
-        results.append(tools.Result(case, f"difference of the toes, softening over a length, {kernel or 'both kernels'}", "m", max(of_kernel) - min(of_kernel),
+    for kinds in [[kind] for kind in KINDS] + [["projected", "umls"], ["projected", "umls with aflip"]]:
+        of_kinds = [value for key, value in toes.items() if key[0] in kinds]
+        name = {"projected, umls": "both kernels"}.get(", ".join(kinds), " and ".join(kinds))
+        results.append(tools.Result(case, f"difference of the toes, softening over a length, {name}", "m", max(of_kinds) - min(of_kinds),
                                     "at most", MOST, 0.0, "independence of cells, meshes and kernels", list(runs.values())[-1]))
     return results
