@@ -65,7 +65,8 @@ void apply_rigid_bodies(Model<D>& m, const Kick& kick, Real dt)
   const std::vector<RigidState<D>> before = state.rigid;
   begin_step(scene, m.problem.loads.gravity(state.clock.time, state.stage.ramp(state.clock.time)), kick.length(), kick.to, state.rigid);
   RigidNodes<D>& nodes = m.work.rigid;
-  nodes.find(m.problem.mesh, m.problem.own, *m.work.strips, scene, state.rigid, m.work.sheets, m.work.fields, affine_fields(m));
+  nodes.find(m.problem.mesh, m.problem.own, *m.work.strips, scene, state.rigid, m.work.sheets, m.work.fields,
+             rigid_bodies_use_affine_fields(m));
   nodes.act(kick, *m.problem.ranks, scene, state.boundary, state.rigid, m.work.fields, m.work.sums.at_nodes);
   std::vector<RigidContact<D>> contacts = find_contacts<D>(scene, state.rigid, dt);
   act_on_contacts<D>(scene, dt, contacts, state.rigid);

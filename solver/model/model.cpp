@@ -230,38 +230,31 @@ void find_averaged_bodies(Model<D>& m)
 }  // namespace
 
 template <int D>
+bool rigid_bodies_use_affine_fields(const Model<D>& m)
+{
+  return !m.problem.rigid.bodies.empty() && m.problem.transfer.affine() && !m.problem.columns.reference;
+}
+
+template <int D>
 void begin_sweeps(Model<D>& m)
 {
   if (m.work.strips)
     return;
   m.work.strips.emplace();
-  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.transfer->keeps_gradients() || m.problem.columns.reference,
-                      m.state.bodies, m.state.materials, m.state.particles, m.work.order);
+  const bool keep = m.transfer->keeps_gradients() || m.problem.columns.reference || rigid_bodies_use_affine_fields(m);
+  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), keep, m.state.bodies, m.state.materials, m.state.particles, m.work.order);
   find_averaged_bodies(m);
   m.work.due.assign(m.problem.columns.reference ? m.work.strips->keys() : 0, 0);
   m.transfer->sum_strips(m);
-}
-
-/// What computes velocity gradients and affine fields of particles from the motion that nodes have from the last step.
-template <int D>
-FindGradients<D> gradients_from_nodes(Model<D>& m)
-{
-  return [&m](std::size_t key, Index strip, StripColumns<D>& columns) { m.transfer->find_gradients(m, key, strip, columns); };
 }
 
 template <int D>
 void copy_to_columns(Model<D>& m)
 {
   if (m.work.strips && m.state.particles.id.empty())
-    m.work.strips->store(m.state.bodies, m.state.materials, m.state.particles, m.work.order, gradients_from_nodes(m));
-}
-
-template <int D>
-FindGradients<D> affine_fields(Model<D>& m)
-{
-  const TransferOptions& transfer = m.problem.transfer;
-  const bool has = transfer.own_affine_field() || (transfer.affine() && m.work.strips->layout().kept_gradients() > 0);
-  return has ? gradients_from_nodes(m) : FindGradients<D>{};
+    m.work.strips->store(
+        m.state.bodies, m.state.materials, m.state.particles, m.work.order,
+        [&m](std::size_t key, Index strip, StripColumns<D>& columns) { m.transfer->find_gradients(m, key, strip, columns); });
 }
 
 template <int D>
@@ -313,11 +306,11 @@ Totals<D> totals(const Model<D>& m)
   template void bind_boundary_conditions(Model<D>&);                                     \
   template void find_forces(const Model<D>&, Real, const StripColumns<D>&, std::size_t); \
   template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);            \
+  template bool rigid_bodies_use_affine_fields(const Model<D>&);                         \
   template void begin_sweeps(Model<D>&);                                                 \
   template void end_sweeps(Model<D>&);                                                   \
   template void copy_to_columns(Model<D>&);                                              \
   template void drop_copy(Model<D>&);                                                    \
-  template FindGradients<D> affine_fields(Model<D>&);                                    \
   template std::optional<ParticleCopy<D>> take_copy(Model<D>&);                          \
   template Totals<D> totals(const Model<D>&);
 TALUS_INSTANTIATE(2)

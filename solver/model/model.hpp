@@ -47,6 +47,11 @@ void adopt_state(Model<D>& m);
 template <int D>
 void bind_boundary_conditions(Model<D>& m);
 
+/// Whether rigid bodies read the affine fields of particles, which are then kept in strips.  With reference configurations they are not about
+/// present positions.
+template <int D>
+bool rigid_bodies_use_affine_fields(const Model<D>& m);
+
 /// Moves the particles into strips, in which steps keep them, unless they are there.  Collective.
 template <int D>
 void begin_sweeps(Model<D>& m);
@@ -58,10 +63,6 @@ template <int D>
 void copy_to_columns(Model<D>& m);
 template <int D>
 void drop_copy(Model<D>& m);
-/// What computes the affine fields of particles from the motion that nodes have from the step before; empty where particles carry none that
-/// follows from this motion alone: with `flip` and `saflip`, and with `tpic` and node operators, whose gradients are those of materials.
-template <int D>
-FindGradients<D> affine_fields(Model<D>& m);
 /// Particles that later steps do not change.
 template <int D>
 struct ParticleCopy {

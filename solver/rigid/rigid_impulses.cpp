@@ -65,7 +65,7 @@ struct Mass {
   Real along_normal, along_tangent;  ///< what resists an impulse [kg]; zero where a boundary condition holds it: nothing is exchanged there
 };
 
-/// The impulse on the material [N s] if the rigid body has velocity u at the node, and its derivative by u.
+/// The impulse on the material [N s] if the rigid body has velocity u at the place of contact, and its derivative by u.
 template <int D>
 struct Impulse {
   Vec<D> pressed = Vec<D>::Zero(), rubbed = Vec<D>::Zero();

@@ -73,20 +73,19 @@ void RigidNodes<D>::find_touching_particles(const Place& at)
   parallel_for(static_cast<Index>(marked_.size()), [&](Index k) {
     auto& touching = touching_[static_cast<std::size_t>(k)];
     touching.clear();
-    for (const Index group : groups_of_field_[at.field]) {
-      ColumnsInCell<D> in = columns_in_cell(at.strips, group, marked_[static_cast<std::size_t>(k)]);
-      for (std::size_t p = in.begin; p < in.end; ++p) {
-        if (at.shape.is_sheet())
-          if (const SideOfSheet side(in.columns.side.of(p)); !side.kept || side.behind != at.sheets.is_behind(at.field))
-            continue;
-        const Vec<D> x = in.columns.x.of(p);
-        const SurfaceDistance<D> to = at.distance(x);
-        const Real gap = to.distance - half_width<D>(in.columns.F.of(p), in.columns.volume0.of(p), to.normal);
-        if (gap > 0)
-          continue;
-        touching.push_back({{gap, to.normal, x - to.distance * to.normal, in.affine_field(p, at.find_gradients)}, x});
-      }
-    }
+    for_each_particle_in<D>(at.strips, groups_of_field_[at.field], marked_[static_cast<std::size_t>(k)],
+                            [&](const StripColumns<D>& columns, std::size_t p) {
+                              if (at.shape.is_sheet())
+                                if (const SideOfSheet side(columns.side.of(p)); !side.kept || side.behind != at.sheets.is_behind(at.field))
+                                  return;
+                              const Vec<D> x = columns.x.of(p);
+                              const SurfaceDistance<D> to = at.distance(x);
+                              const Real gap = to.distance - half_width<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
+                              if (gap > 0)
+                                return;
+                              const Mat<D> field = at.with_affine_fields ? columns.affine_field().of(p) : Mat<D>(Mat<D>::Zero());
+                              touching.push_back({{gap, to.normal, x - to.distance * to.normal, field}, x});
+                            });
   });
 }
 
@@ -109,7 +108,7 @@ void RigidNodes<D>::find_deepest(const Place& at, std::span<RigidNode<D>> found)
   back_(touch_, Whole{}, [](Touch<D>& deepest, const Touch<D>& other) { deepest = std::min(deepest, other); });
   for (RigidNode<D>& one : found) {
     one.touch = touch_[static_cast<std::size_t>(one.node)];
-    one.offset = one.touch.gradient * (at.mesh.node(one.node) - one.touch.place);
+    one.offset = one.touch.affine_field * (at.mesh.node(one.node) - one.touch.place);
   }
   for (const Index n : candidates_)
     touch_[static_cast<std::size_t>(n)] = {};
@@ -118,14 +117,14 @@ void RigidNodes<D>::find_deepest(const Place& at, std::span<RigidNode<D>> found)
 template <int D>
 void RigidNodes<D>::find(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips, const RigidScene<D>& scene,
                          std::span<const RigidState<D>> states, const Sheets<D>& sheets, std::span<const VelocityField<D>> fields,
-                         const FindGradients<D>& find_gradients)
+                         bool with_affine_fields)
 {
   if (!any())
     return;
   nodes_.clear();
   for (std::size_t r = 0; r < scene.bodies.size(); ++r)
     for (std::size_t f = 0; f < fields.size(); ++f) {
-      const Place at{mesh, own, strips, *scene.bodies[r].shape, states[r], static_cast<Index>(r), sheets, f, find_gradients};
+      const Place at{mesh, own, strips, *scene.bodies[r].shape, states[r], static_cast<Index>(r), sheets, f, with_affine_fields};
       const std::size_t before = nodes_.size();
       find_candidates(at, fields[f].nodes);
       const std::span<RigidNode<D>> found = std::span(nodes_).subspan(before);
@@ -135,12 +134,11 @@ void RigidNodes<D>::find(const Mesh<D>& mesh, const OwnNodes& own, const Particl
   std::erase_if(nodes_, [](const RigidNode<D>& one) { return !one.touch.is_seen(); });
 }
 
-#define TALUS_INSTANTIATE(D)                                                                                             \
-  template void RigidNodes<D>::begin(const Mesh<D>&, const Subdomain&, Communicator&, const RigidScene<D>&,              \
-                                     const std::vector<std::vector<Index>>&);                                            \
-  template void RigidNodes<D>::find(const Mesh<D>&, const OwnNodes&, const ParticleStrips<D>&, const RigidScene<D>&,     \
-                                    std::span<const RigidState<D>>, const Sheets<D>&, std::span<const VelocityField<D>>, \
-                                    const FindGradients<D>&);
+#define TALUS_INSTANTIATE(D)                                                                                         \
+  template void RigidNodes<D>::begin(const Mesh<D>&, const Subdomain&, Communicator&, const RigidScene<D>&,          \
+                                     const std::vector<std::vector<Index>>&);                                        \
+  template void RigidNodes<D>::find(const Mesh<D>&, const OwnNodes&, const ParticleStrips<D>&, const RigidScene<D>&, \
+                                    std::span<const RigidState<D>>, const Sheets<D>&, std::span<const VelocityField<D>>, bool);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)
 #undef TALUS_INSTANTIATE

@@ -18,20 +18,23 @@ struct Touch {
   Real gap = std::numeric_limits<Real>::infinity();  ///< between both surfaces [m], <= 0; infinite where nothing touches
   Vec<D> normal = Vec<D>::Zero();                    ///< out of the rigid body, unit length
   Vec<D> place = Vec<D>::Zero();                     ///< on its surface [m]
-  Mat<D> gradient = Mat<D>::Zero();                  ///< affine field of the particle, zero where particles carry none [1/s]
+  Mat<D> affine_field = Mat<D>::Zero();              ///< of the particle [1/s]
   bool is_seen() const noexcept { return gap <= 0; }
-  /// The deeper one of two; of equally deep ones that with the smaller coordinates of place, then of normal, so that their order does not matter.
+  /// The deeper one of two; of equally deep ones that with the smaller numbers of place, normal, then field, so that their order does not matter.
   friend bool operator<(const Touch& a, const Touch& b) noexcept
   {
     if (a.gap != b.gap)
       return a.gap < b.gap;
-    return a.place != b.place ? std::ranges::lexicographical_compare(a.place, b.place)
-                              : std::ranges::lexicographical_compare(a.normal, b.normal);
+    if (a.place != b.place)
+      return std::ranges::lexicographical_compare(a.place, b.place);
+    if (a.normal != b.normal)
+      return std::ranges::lexicographical_compare(a.normal, b.normal);
+    return std::ranges::lexicographical_compare(a.affine_field.reshaped(), b.affine_field.reshaped());
   }
   template <class Self>
   static auto parts(Self& self) noexcept
   {
-    return std::tie(self.gap, self.normal, self.place, self.gradient);
+    return std::tie(self.gap, self.normal, self.place, self.affine_field);
   }
 };
 
@@ -56,9 +59,8 @@ struct RigidNode {
 ///
 /// **Impulse.**  The velocity of the material at the place of contact c is v_n - C (x_n - c), with the affine field C of the particle that
 /// reaches deepest.  Where it approaches the body, it gets the normal velocity of the body there (a plastic impact), and the tangential one
-/// unless friction carries less.  The velocity of a free body after the step is the solution of its
-/// equations of motion with all these impulses, so that a light body between heavy nodes is stable; Newton's method finds it, with exact sums
-/// over the nodes of all ranks.
+/// unless friction carries less.  The velocity of a free body after the step is the solution of its equations of motion with all these
+/// impulses, so that a light body between heavy nodes is stable; Newton's method finds it, with exact sums over the nodes of all ranks.
 template <int D>
 class RigidNodes {
  public:
@@ -67,11 +69,10 @@ class RigidNodes {
              const std::vector<std::vector<Index>>& groups_of_field);
   bool any() const noexcept { return n_bodies_ > 0; }
 
-  /// Finds the nodes that touch.  `find_gradients` reads what nodes have from the step before; empty where particles carry no affine field.
-  /// Collective.
+  /// Finds the nodes that touch.  Without `with_affine_fields` those of particles count as zero.  Collective.
   void find(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips, const RigidScene<D>& scene,
             std::span<const RigidState<D>> states, const Sheets<D>& sheets, std::span<const VelocityField<D>> fields,
-            const FindGradients<D>& find_gradients);
+            bool with_affine_fields);
   /// Exchanges impulses between the new velocities of nodes and bodies.  Boundary conditions act on nodes that change.  Collective.
   void act(const Kick& kick, Communicator& ranks, const RigidScene<D>& scene, BoundaryConditions<D>& conditions,
            std::span<RigidState<D>> states, std::span<VelocityField<D>> fields, ExactSums<BoundaryWork>& work);
@@ -93,7 +94,7 @@ class RigidNodes {
     Index rigid;
     const Sheets<D>& sheets;
     std::size_t field;
-    const FindGradients<D>& find_gradients;
+    bool with_affine_fields;
     bool acts_on(Index node) const noexcept
     {
       return !shape.is_sheet() || (sheets.nearest(node) == rigid && sheets.is_parted(field, node));

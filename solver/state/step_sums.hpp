@@ -33,8 +33,8 @@ struct RigidSums {
   Vec3 angular = Vec3::Zero();      ///< its moment about the origin [N m s]
   Vec3 torque = Vec3::Zero();       ///< its moment about the centre of the body [N m s]
   Real moved{};                     ///< work of the impulses with the velocity of the body [J]
-  Real arrival{};                   ///< kinetic energy that the material loses where it gets that velocity, <= 0 [J]
-  Real friction{};                  ///< work of tangential impulses in the sliding of the material, <= 0 [J]
+  Real arrival{};   ///< what else the material gains [J]: less than zero where it meets the body, and work between node and place
+  Real friction{};  ///< work of tangential impulses in the sliding of the material, <= 0 [J]
   RigidSums& operator+=(const RigidSums& other) noexcept
   {
     impulse += other.impulse, angular += other.angular, torque += other.torque;

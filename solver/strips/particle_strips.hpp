@@ -21,11 +21,6 @@
 
 namespace talus {
 
-/// Where strips do not hold gradients: find_gradients(key, strip, columns) sets L and C to arrays of those of the particles of a strip, in
-/// memory of the calling thread.  Called by several threads.
-template <int D>
-using FindGradients = std::function<void(std::size_t key, Index strip, StripColumns<D>& columns)>;
-
 /// The particles between load() and store().  A key is the number of a group of particles and a block of cells.  Each body is a group, with
 /// the number of the body; where sheets part velocities, groups of the particles of each body behind sheets follow.
 ///
@@ -39,9 +34,11 @@ class ParticleStrips {
   /// `keep_gradients`.  Collective.
   void load(Communicator& ranks, Index n_cells, bool keep_gradients, const std::vector<Body>& bodies, std::vector<Material>& materials,
             Particles<D>& particles, CellOrder& order);
-  /// Writes the particles into columns, sorted by cell; the strips keep them too.
+  /// Writes the particles into columns, sorted by cell; the strips keep them too.  Where they do not hold gradients,
+  /// find_gradients(key, strip, columns) sets L and C to arrays of those of the particles of a strip; called by several threads.
+  using FindGradients = std::function<void(std::size_t key, Index strip, StripColumns<D>& columns)>;
   void store(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& order,
-             const FindGradients<D>& find_gradients) const;
+             const FindGradients& find_gradients) const;
 
   /// Empties the columns and histories, as load() does.
   static void clear(std::vector<Material>& materials, Particles<D>& particles, CellOrder& order);

@@ -8,46 +8,22 @@
 
 namespace talus {
 
-/// The particles of a group in a cell: those from `begin` to `end` of the columns of a strip.
-template <int D>
-struct ColumnsInCell {
-  std::size_t key = 0;  ///< of the group and the block of the cell
-  Index strip = 0;      ///< number of the strip in its block
-  StripColumns<D> columns{};
-  std::size_t begin = 0, end = 0;
-  /// That of particle p [1/s]; zero without `find_gradients`.
-  Mat<D> affine_field(std::size_t p, const FindGradients<D>& find_gradients)
-  {
-    if (!find_gradients)
-      return Mat<D>::Zero();
-    if (!columns.L)
-      find_gradients(key, strip, columns);
-    return columns.affine_field().of(p);
-  }
-};
-template <int D>
-ColumnsInCell<D> columns_in_cell(const ParticleStrips<D>& strips, Index group, Index cell)
-{
-  ColumnsInCell<D> in{.key = strips.key(group, cell / block_cells), .strip = cell % block_cells / strip_cells};
-  const std::span<const Strip> all = strips.strips(in.key);
-  if (all.empty())
-    return in;
-  const Strip& one = all[to_size(in.strip)];
-  const auto count = one.count.begin() + cell % strip_cells;
-  if (*count == 0)
-    return in;
-  in.begin = to_size(std::accumulate(one.count.begin(), count, Index{0})), in.end = in.begin + to_size(*count);
-  in.columns = strips.columns(one);
-  return in;
-}
-
 /// Calls f(columns of a strip, place in them) for each particle of a group in a cell.
 template <int D, class F>
 void for_each_particle_in(const ParticleStrips<D>& strips, Index group, Index cell, F&& f)
 {
-  const ColumnsInCell<D> in = columns_in_cell(strips, group, cell);
-  for (std::size_t i = in.begin; i < in.end; ++i)
-    f(in.columns, i);
+  const Index block = cell / block_cells, strip = cell % block_cells / strip_cells, c = cell % strip_cells;
+  const std::span<const Strip> all = strips.strips(strips.key(group, block));
+  if (all.empty())
+    return;
+  const Strip& one = all[to_size(strip)];
+  const Index count = one.count[to_size(c)];
+  if (count == 0)
+    return;
+  const Index begin = std::accumulate(one.count.begin(), one.count.begin() + c, Index{0});
+  const StripColumns<D> columns = strips.columns(one);
+  for (Index i = begin; i < begin + count; ++i)
+    f(columns, to_size(i));
 }
 
 /// The same for the particles of several groups, in their order.

@@ -129,7 +129,7 @@ void ParticleStrips<D>::clear(std::vector<Material>& materials, Particles<D>& pa
 
 template <int D>
 void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& sorted,
-                              const FindGradients<D>& find_gradients) const
+                              const FindGradients& find_gradients) const
 {
   const std::size_t keys_in_front = block_.size() / to_size(sides_);
   sorted.first.assign(keys_in_front + 1, 0);
@@ -191,12 +191,10 @@ void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& 
 template void ParticleStrips<2>::load(Communicator&, Index, bool, const std::vector<Body>&, std::vector<Material>&, Particles<2>&,
                                       CellOrder&);
 template void ParticleStrips<2>::clear(std::vector<Material>&, Particles<2>&, CellOrder&);
-template void ParticleStrips<2>::store(std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&,
-                                       const FindGradients<2>&) const;
+template void ParticleStrips<2>::store(std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&, const FindGradients&) const;
 template void ParticleStrips<3>::load(Communicator&, Index, bool, const std::vector<Body>&, std::vector<Material>&, Particles<3>&,
                                       CellOrder&);
 template void ParticleStrips<3>::clear(std::vector<Material>&, Particles<3>&, CellOrder&);
-template void ParticleStrips<3>::store(std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&,
-                                       const FindGradients<3>&) const;
+template void ParticleStrips<3>::store(std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&, const FindGradients&) const;
 
 }  // namespace talus

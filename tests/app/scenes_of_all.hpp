@@ -255,6 +255,8 @@ inline std::vector<SceneCase> scenes_of_all()
       "  - {name: ram, shape: {type: box, low: [0.2, 1.45], high: [1.1, 1.6]}, motion: given, velocity: [0, -6], angular_velocity: [-1], "
       "table: [[0, 0], [0.02, 1], [1, 0]], friction: 0.3}\n";
   all.push_back({"rigid", rigid});
+  all.push_back({"rigid_linear", rigid});
+  all.back().parts.more += "kernel: linear\n";
   rigid.more += "contacts: [{between: [low, high], friction: 0.3}]\nkernel: umls\n";
   all.push_back({"rigid_in_contact_umls", rigid});
   SceneParts sheet = two_materials;
