@@ -108,7 +108,7 @@ TYPED_TEST(RigidIn, OnlyNodesBesideItsSurfaceMoveWithABall)
   end_sweeps(m);
 }
 
-// The block is pressed together: it moves up faster the farther below it is, and where the ball touches it, off the nodes, both are at rest.
+// The block is pressed together: it moves up faster the farther below it is, and at the lowest point of the ball, off the nodes, both are at rest.
 TYPED_TEST(RigidIn, VelocitiesAreComparedAtThePlaceOfContact)
 {
   constexpr int D = TypeParam::D;
