@@ -95,7 +95,7 @@ template <int D>
 void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 {
   for (VelocityField<D>& field : m.work.fields)
-    field.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, field.nodes, m.work.sums.beyond_nodes);
+    field.small_mass_nodes.extrapolate(m.problem.own, kick, m.state.boundary, field.nodes, m.work.sums.beyond_nodes);
 }
 
 /// Finds the pressure of flowing pore water at the end of the step, and what it does to velocities.

@@ -23,8 +23,10 @@ def probability_of_one_variable(deviation, data):
 def start(lab, series, data):
     """The runs of a series, one a seed."""
     length = series["length [H]"] * data["height [m]"]
-    return {seed: lab.run(f"{CASE}/scene.yaml", tools.label(f"{series['deviation']}_{series['length [H]']}_{seed}"),
-                          {f"{VARIATION}.coefficient_of_variation": series["deviation"], f"{VARIATION}.correlation_length": [length],
+    finer = {"mesh.size": series["cells [m]"], **data["settings of finer cells"]} if "cells [m]" in series else {}
+    name = "_".join(str(series[key]) for key in ("deviation", "length [H]", "cells [m]") if key in series)
+    return {seed: lab.run(f"{CASE}/scene.yaml", tools.label(f"{name}_{seed}"),
+                          {**finer, f"{VARIATION}.coefficient_of_variation": series["deviation"], f"{VARIATION}.correlation_length": [length],
                            f"{VARIATION}.seed": seed}, may_fail=True)
             for seed in range(1, series["seeds"] + 1)}
 
@@ -43,7 +45,7 @@ def share(count, n):
 def probability(series, runs, data):
     """Result with the share of slopes that fail; of one variable judged within three standard errors."""
     p, error = share(sum(fails(run, data) for run in runs.values()), len(runs))
-    name = f"V = {series['deviation']}, correlation length {series['length [H]']} H"
+    name = f"V = {series['deviation']}, correlation length {series['length [H]']} H" + (f", cells of {series['cells [m]']} m" if "cells [m]" in series else "")
     expected = probability_of_one_variable(series["deviation"], data)
     judged = series.get("judged", False)
     return tools.Result(CASE, f"share of {len(runs)} slopes that fail, {name}, standard error {error:.2f}", "-", p, "near" if judged else "reported",
@@ -69,7 +71,7 @@ def draw(figure, started, data):
     axis = figure.subplots()
     for deviation, mark in ((0.25, "s"), (0.5, "o"), (1, "^")):
         points = sorted((series["length [H]"], *share(sum(fails(run, data) for run in runs.values()), len(runs))) for series, runs in started
-                        if series["deviation"] == deviation)
+                        if series["deviation"] == deviation and "cells [m]" not in series)
         if points:
             length, p, error = np.array(points).T
             axis.errorbar(np.minimum(length, 20), p, error, fmt=mark, capsize=3, label=f"talus, V = {deviation}")

@@ -1,4 +1,4 @@
-"""A shear band in a layer that softens, and a block of metal that is sheared off: width and work on several meshes, with a softening length and without."""
+"""A shear band in a layer that softens, a block of metal sheared off and a plate torn: width and work on several meshes, with a softening length and without."""
 import numpy as np
 
 import lab as tools
@@ -6,7 +6,9 @@ import lab as tools
 CASE = "softening_band"
 SIZES = {12: "quick", 24: "full", 48: "full"}  # cells over the thickness: 6, 12 and 24 over the band
 ENDS = {6.5: "quick", 6.6: "full", 6.7: "full"}  # m: gmsh then makes other triangles
-METAL_SIZES = {0.667: "quick", 0.5: "quick", 0.333: "full"}  # mm: 3, 4 and 6 cells over twice the length
+METALS = {  # scene: side whose reaction is the force, cells [mm] with their level; 3, 4, 6 and 8 cells over twice the length
+    "metal": ("reaction_y_max_x", {0.667: "quick", 0.5: "quick", 0.333: "full"}),
+    "crack": ("reaction_upper_y", {0.667: "full", 0.5: "full", 0.333: "full", 0.25: "full"})}
 REPORTED = ("reported", None, None, "")
 MIDDLE = (2, 4)  # m: the part of the layer that is measured
 
@@ -113,41 +115,42 @@ def draw(figure, with_length, without, data):
     right.legend()
 
 
-def slip_at_fracture(run, data):
-    """Slip between bottom and top [m] at which the force has fallen to half its peak, and that peak [N/m]."""
-    slip = data["speed of the sides of the block apart [m/s]"] * run.history["time"]
-    force = np.abs(run.history["reaction_y_max_x"])
+def fracture(run, side, data):
+    """Motion of the sides apart [m] at which the force has fallen to half its peak, and that peak [N/m]."""
+    motion = data["speed of the sides of the metal apart [m/s]"] * run.history["time"]
+    force = np.abs(run.history[side])
     peak = force.argmax()
     fallen = peak + np.argmax(force[peak:] < force[peak] / 2)
-    return slip[fallen], force[peak]
+    return motion[fallen], force[peak]
 
 
-def evaluate_metal(lab):
-    """Results of the block of metal: its plastic work to the end, when it is sheared off."""
+def evaluate_metal(lab, scene):
+    """Results of a block of metal that is sheared off, or of a plate that is torn: plastic work to the end, when it is in two."""
     data = tools.reference(CASE)
+    side, levels = METALS[scene]
     length = {"materials[0].damage.softening_length": data["softening length of the metal [m]"]}
-    sizes = [size for size, level in METAL_SIZES.items() if lab.level in ("full", level)]
+    sizes = [size for size, level in levels.items() if lab.level in ("full", level)]
 
     def run(size, settings, label):
-        return lab.run(f"{CASE}/metal.yaml", tools.label(f"{label}_{size}"), {"mesh.size": size * 1e-3, **settings})
+        return lab.run(f"{CASE}/{scene}.yaml", tools.label(f"{label}_{size}"), {"mesh.size": size * 1e-3, **settings})
 
-    metal = {size: run(size, length, "metal") for size in sizes}
-    without = {size: run(size, {}, "metal_without") for size in sizes if lab.level == "full"}
+    averaged = {size: run(size, length, scene) for size in sizes}
+    without = {size: run(size, {}, f"{scene}_without") for size in sizes if lab.level == "full"}
     results = []
-    for label, runs in (("", metal), (", no length", without)):
+    for label, runs in (("", averaged), (", no length", without)):
         for size, one in runs.items():
-            what = f"metal, cells of {size:g} mm{label}"
-            slip, force = slip_at_fracture(one, data)
-            checked = runs is metal and size != sizes[0]
-            against = ("within", data["slack of the work of the metal"], metal[sizes[0]].history["plastic"][-1], "the coarsest mesh")
+            what = f"{scene}, cells of {size:g} mm{label}"
+            motion, force = fracture(one, side, data)
+            checked = runs is averaged and size != sizes[0]
+            against = ("within", data["slack of the work of the metal"], averaged[sizes[0]].history["plastic"][-1], "the coarsest mesh")
             results += [tools.Result(CASE, f"plastic work, {what}", "J/m", one.history["plastic"][-1], *(against if checked else REPORTED), one),
-                        tools.Result(CASE, f"slip at half the peak force, {what}", "m", slip, *REPORTED, one),
+                        tools.Result(CASE, f"motion of the sides at half the peak force, {what}", "m", motion, *REPORTED, one),
                         tools.Result(CASE, f"peak force, {what}", "N/m", force, *REPORTED, one)]
     return results
 
 
 def evaluate(lab):
-    """Results of a shear band and of the block of metal."""
+    """Results of a shear band, a block of metal and a plate of metal."""
     data = tools.reference(CASE)
     length = {"materials[0].softening_length": data["softening length [m]"]}
 
@@ -175,4 +178,4 @@ def evaluate(lab):
     with_length = {cells: cone[cells, 6.5] for cells in SIZES if (cells, 6.5) in cone}
     lab.figure(CASE, "verification_softening_band", lambda figure: draw(figure, with_length, without, data), size=(8, 3.6),
                caption="Plastic strain and shear stress of a softening layer with a softening length (lines) and without (dots).")
-    return results + evaluate_metal(lab)
+    return results + [result for scene in METALS for result in evaluate_metal(lab, scene)]

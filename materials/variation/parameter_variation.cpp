@@ -30,6 +30,15 @@ void ParameterVariation::check(std::vector<std::string>& problems) const
     problems.emplace_back("minimum must be below maximum");
 }
 
+Real ParameterVariation::unevenness(const Vec3& apart) const
+{
+  const Real square = coefficient_of_variation * coefficient_of_variation;
+  if (square == 0)
+    return 0;
+  const Real variance = distribution == Distribution::lognormal ? std::log1p(square) : square;
+  return variance / 2 * (1 - RandomField::correlation(covariance, lengths_of(correlation_length), apart));
+}
+
 bool ParameterVariation::operator==(const ParameterVariation& other) const
 {
   const auto all = [](const ParameterVariation& one) {

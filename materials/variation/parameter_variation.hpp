@@ -52,6 +52,9 @@ struct ParameterVariation {
         optional("maximum", &V::maximum, any, "unit of the parameter", "higher values become this one")};
   }
   void check(std::vector<std::string>& problems) const;
+  /// By how much, relative to it, the mean of values at many places is above their geometric mean, where each two are `apart` [m]: half the
+  /// variance that their correlation leaves, of the logarithm for lognormal values.
+  Real unevenness(const Vec3& apart) const;
   /// Whether both make the same field, wherever they stand in a file.
   bool operator==(const ParameterVariation& other) const;
 };

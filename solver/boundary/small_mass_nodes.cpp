@@ -1,5 +1,8 @@
 #include "solver/boundary/small_mass_nodes.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
 namespace talus {
 
 template <int D>
@@ -7,64 +10,130 @@ SmallMassNodes<D>::SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, cons
     : near_(copies_of_nodes(ranks, subdomain, MessageTag::small_mass_nodes, spread_by_rings(mesh, own.owned, 2)))
 {}
 
-template <int D>
-void SmallMassNodes<D>::weigh_hosts(const Mesh<D>& mesh, Index small_mass_node)
-{
-  const auto n = static_cast<std::size_t>(small_mass_node);
-  Real total = 0;
-  for (std::uint8_t ring = 1; ring <= 2 && !(total > 0); ++ring) {
-    ring_[n] = ring;
-    for_each_active_around(mesh, small_mass_node, ring, [&](Index, Real mass) { total += mass; });
+namespace {
+
+/// Rows of columns that are sent together.
+template <class... Column>
+struct Together {
+  std::tuple<Column&...> columns;
+  auto operator[](std::size_t n) const noexcept
+  {
+    return std::apply([n](auto&... column) { return std::tie(column[n]...); }, columns);
   }
-  weight_[n] = -total;
+};
+
+}  // namespace
+
+/// The fit has a slope along the principal axes in which the variance of the places of the hosts is at least this share of their mean squared
+/// distance, and a smaller one in proportion below it.
+constexpr Real least_spread = 0.05;
+/// And none if a host would lose more than this share of its mass.
+constexpr Real largest_loss = 0.5;
+
+template <int D>
+void SmallMassNodes<D>::list_hosts(const Mesh<D>& mesh)
+{
+  hosts_.clear();
+  begin_.clear();
+  for (const Index node : small_) {
+    place_[static_cast<std::size_t>(node)] = begin_.size();
+    begin_.push_back(hosts_.size());
+    const auto first = static_cast<std::ptrdiff_t>(hosts_.size());
+    for (const Index between : mesh.ring_of_node()[node])
+      for (const Index n : mesh.ring_of_node()[between])
+        if (const Real mass = weight_[static_cast<std::size_t>(n)]; mass > 0)
+          hosts_.push_back({n, mass});
+    std::ranges::sort(hosts_.begin() + first, hosts_.end(), {}, &Host::node);
+    std::size_t last = begin_.back();
+    for (std::size_t i = last + 1; i < hosts_.size(); ++i)
+      if (hosts_[i].node == hosts_[last].node)
+        hosts_[last].share += hosts_[i].share;
+      else
+        hosts_[++last] = hosts_[i];
+    hosts_.resize(std::min(hosts_.size(), last + 1));
+  }
+  begin_.push_back(hosts_.size());
+}
+
+template <int D>
+auto SmallMassNodes<D>::hosts_of(Index small_mass_node) noexcept -> std::span<Host>
+{
+  const std::size_t place = place_[static_cast<std::size_t>(small_mass_node)];
+  return std::span(hosts_).subspan(begin_[place], begin_[place + 1] - begin_[place]);
+}
+
+template <int D>
+void SmallMassNodes<D>::fit_to_hosts(const Mesh<D>& mesh, Index small_mass_node)
+{
+  HostFit& fit = fits_[static_cast<std::size_t>(small_mass_node)];
+  const auto apart = [&](const Host& host) { return Vec<D>(mesh.node(host.node) - mesh.node(small_mass_node)); };
+  Real total = 0;
+  Vec<D> first = Vec<D>::Zero();
+  Mat<D> second = Mat<D>::Zero();
+  for (const Host& host : hosts_of(small_mass_node)) {
+    const Vec<D> r = apart(host);
+    total += host.share;
+    first += host.share * r;
+    second += host.share * r * r.transpose();
+  }
+  fit.level = total > 0 ? 1 / total : 0;
+  fit.slope.setZero();
+  if (!(second.trace() > 0))  // no hosts, or its twin across a cut alone
+    return;
+  const Vec<D> centre = first / total;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, D, D>> spread(second / total - centre * centre.transpose());
+  const Real least = least_spread * second.trace() / total;
+  Vec<D> along = spread.eigenvectors().transpose() * centre;
+  for (int i = 0; i < D; ++i)
+    along[i] /= std::max(spread.eigenvalues()[i], least) * total;
+  const Vec<D> slope = -(spread.eigenvectors() * along);
+  const Real level = fit.level - slope.dot(centre);
+  for (const Host& host : hosts_of(small_mass_node))
+    if (fit.mass * host.share * (level + slope.dot(apart(host))) < -largest_loss * weight_[static_cast<std::size_t>(host.node)])
+      return;
+  fit.level = level;
+  fit.slope = slope;
+}
+
+template <int D>
+void SmallMassNodes<D>::set_shares(const Mesh<D>& mesh, Index small_mass_node)
+{
+  const HostFit& fit = fits_[static_cast<std::size_t>(small_mass_node)];
+  for (Host& host : hosts_of(small_mass_node))
+    host.share *= fit.level + fit.slope.dot(mesh.node(host.node) - mesh.node(small_mass_node));
+}
+
+template <int D>
+void SmallMassNodes<D>::set_momentum(Index small_mass_node, const Vec<D>& momentum)
+{
+  Vec<D> fitted = Vec<D>::Zero();
+  for_each_host(small_mass_node, [&](Index host, Real share) { fitted += share * velocity_[static_cast<std::size_t>(host)]; });
+  HostFit& fit = fits_[static_cast<std::size_t>(small_mass_node)];
+  fit.momentum = momentum - fit.mass * fitted;
 }
 
 template <int D>
 void SmallMassNodes<D>::exchange_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes)
 {
-  near_.send(ring_, OfMarked{itself, ring_});
-  near_.take(ring_, OfMarked{itself, ring_});
-  const auto has_small_mass = [&](Index n) { return ring_[static_cast<std::size_t>(n)] != 0; };
+  near_.send(is_small_, OfMarked{itself, is_small_});
+  near_.take(is_small_, OfMarked{itself, is_small_});
+  const auto has_small_mass = [&](Index n) { return is_small_[static_cast<std::size_t>(n)] != 0; };
   small_here_.clear(), small_there_.clear();
-  may_host_.assign(ring_.size(), 0);
+  may_host_.assign(is_small_.size(), 0);
   for (const NeighbourRank& border : near_.borders()) {
     small_here_.push_back(std::ranges::any_of(border.out, has_small_mass) ? 1 : 0);
     small_there_.push_back(std::ranges::any_of(border.in, has_small_mass) ? 1 : 0);
     for (const Index n : border.in)
       if (has_small_mass(n)) {
-        small_.push_back({n, 0});
+        small_.push_back(n);
         for (const Index between : mesh.ring_of_node()[n])
           for (const Index around : mesh.ring_of_node()[between])
             may_host_[static_cast<std::size_t>(around)] = nodes.active[static_cast<std::size_t>(around)];
       }
   }
-  send_from_hosts(weight_, OfMarked{itself, may_host_});
+  send_from_hosts(Together<std::vector<Real>, SparseRows<Vec<D>>>{{weight_, velocity_}},
+                  OfMarked{[](const auto& row) { return row; }, may_host_});
 }
-
-namespace {
-
-/// The data that a node of small mass gives to its hosts, and from which their shares are computed.
-template <int D>
-struct NodeAndHosts {
-  NodeSum<D>& sum;
-  Real& weight;
-  std::uint8_t& ring;
-};
-template <int D>
-struct NodesAndHosts {
-  SparseRows<NodeSum<D>>& sum;
-  std::vector<Real>& weight;
-  std::vector<std::uint8_t>& ring;
-  NodeAndHosts<D> operator[](std::size_t n) const noexcept { return {sum[n], weight[n], ring[n]}; }
-
-  template <int E>
-  static auto parts(const NodeAndHosts<E>& row) noexcept
-  {
-    return std::tie(row.sum.mass, row.sum.momentum, row.sum.force, row.weight, row.ring);
-  }
-};
-
-}  // namespace
 
 template <int D>
 void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, ActiveNodes which)
@@ -72,84 +141,116 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
   small_.reserve(nodes.sum.size());
   small_.clear();
   weight_.resize(nodes.sum.size());
-  ring_.resize(nodes.sum.size());
+  is_small_.resize(nodes.sum.size());
+  velocity_.resize(nodes.sum.size());
+  fits_.resize(nodes.sum.size());
+  place_.resize(nodes.sum.size());
   for (const NeighbourRank& border : near_.borders())
     for (const Index n : border.in)  // which may be in use on another rank alone
-      ring_[static_cast<std::size_t>(n)] = 0, weight_[static_cast<std::size_t>(n)] = 0;
+      is_small_[static_cast<std::size_t>(n)] = 0, weight_[static_cast<std::size_t>(n)] = 0;
   nodes.in_use.for_each_ascending([&](Index node) {
     const auto n = static_cast<std::size_t>(node);
     const NodeSum<D>& sum = nodes.sum[n];
     if (which == ActiveNodes::by_mass)
       nodes.active[n] = has_own_motion(sum, nodes) ? 1 : 0;
     weight_[n] = nodes.active[n] ? sum.mass : 0;
-    ring_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0)) ? 1 : 0;
-    if (ring_[n] != 0)
-      small_.push_back({node, sum.mass});
+    if (weight_[n] > 0)
+      velocity_[n] = sum.momentum / sum.mass;
+    is_small_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0)) ? 1 : 0;
+    if (is_small_[n] != 0)
+      small_.push_back(node);
   });
-  const std::size_t n_own = small_.size();
-  if (!near_.borders().empty())
+  if (!near_.borders().empty()) {
     exchange_neighbours(mesh, nodes);
-  for (std::size_t s = 0; s < n_own; ++s)
-    weigh_hosts(mesh, small_[s].node);
-  send_to_hosts(NodesAndHosts<D>{nodes.sum, weight_, ring_}, OfMarked{[](const auto& row) { return NodesAndHosts<D>::parts(row); }, ring_});
-  if (small_.size() > n_own)
-    std::ranges::sort(small_, {}, &SmallMassNode::node);
-  give_to_hosts(mesh, own, nodes, [](NodeSum<D>& to, Real share, const NodeSum<D>& from) {
-    to.mass += share * from.mass;
-    to.momentum += share * from.momentum;
+    std::ranges::sort(small_);
+  }
+  list_hosts(mesh);
+  for (const Index node : small_)
+    if (own.has(node)) {
+      const NodeSum<D>& sum = nodes.sum[static_cast<std::size_t>(node)];
+      fits_[static_cast<std::size_t>(node)].mass = sum.mass;
+      fit_to_hosts(mesh, node);
+      set_shares(mesh, node);
+      set_momentum(node, sum.momentum);
+    }
+  using Rows = Together<SparseRows<NodeSum<D>>, SparseRows<HostFit>>;
+  const auto parts = [](const std::tuple<NodeSum<D>&, HostFit&>& row) {
+    const auto& [sum, fit] = row;
+    return std::tie(sum.force, fit.level, fit.slope, fit.mass, fit.momentum);
+  };
+  send_to_hosts(Rows{{nodes.sum, fits_}}, OfMarked{parts, is_small_});
+  for (const Index node : small_)
+    if (!own.has(node))
+      set_shares(mesh, node);
+  give_to_hosts(own, nodes, [](NodeSum<D>& to, Real share, const HostFit& fit, const Vec<D>& velocity, const NodeSum<D>& from) {
+    to.mass += share * fit.mass;
+    to.momentum += share * (fit.momentum + fit.mass * velocity);
     to.force += share * from.force;
   });
 }
 
 template <int D>
-void SmallMassNodes<D>::lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
+void SmallMassNodes<D>::lump_momentum(const OwnNodes& own, Nodes<D>& nodes)
 {
-  send_to_hosts(nodes.sum, OfMarked{[](auto& sum) { return NodeSum<D>::momentum_parts(sum); }, ring_});
-  give_to_hosts(mesh, own, nodes, [](NodeSum<D>& to, Real share, const NodeSum<D>& from) { to.momentum += share * from.momentum; });
+  nodes.in_use.for_each([&](Index node) {
+    const auto n = static_cast<std::size_t>(node);
+    if (weight_[n] > 0)
+      velocity_[n] = nodes.sum[n].momentum / weight_[n];
+  });
+  send_from_hosts(velocity_, OfMarked{itself, may_host_});
+  for (const Index n : small_)
+    if (own.has(n))
+      set_momentum(n, nodes.sum[static_cast<std::size_t>(n)].momentum);
+  send_to_hosts(fits_, OfMarked{[](auto& fit) { return std::tie(fit.momentum); }, is_small_});
+  give_to_hosts(own, nodes, [](NodeSum<D>& to, Real share, const HostFit& fit, const Vec<D>& velocity, const NodeSum<D>&) {
+    to.momentum += share * (fit.momentum + fit.mass * velocity);
+  });
 }
 
 template <int D>
 template <class F>
-void SmallMassNodes<D>::give_to_hosts(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const
+void SmallMassNodes<D>::give_to_hosts(const OwnNodes& own, Nodes<D>& nodes, F&& f) const
 {
-  for (const SmallMassNode& small_mass_node : small_)
-    for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) {
+  for (const Index node : small_) {
+    const auto n = static_cast<std::size_t>(node);
+    for_each_host(node, [&](Index host, Real share) {
+      const auto h = static_cast<std::size_t>(host);
       if (own.has(host))
-        f(nodes.sum[static_cast<std::size_t>(host)], share, nodes.sum[static_cast<std::size_t>(small_mass_node.node)]);
+        f(nodes.sum[h], share, fits_[n], velocity_[h], nodes.sum[n]);
     });
-}
-
-template <int D>
-void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions,
-                                    Nodes<D>& nodes, ExactSums<BoundaryWork>& work)
-{
-  SparseRows<NodeMotion<D>>& motion = nodes.motion;
-  send_from_hosts(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, may_host_});
-  for (const SmallMassNode& small_mass_node : small_) {
-    if (!own.has(small_mass_node.node))
-      continue;
-    NodeMotion<D> mean;
-    for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) {
-      mean.v += share * motion[static_cast<std::size_t>(host)].v;
-      mean.change += share * motion[static_cast<std::size_t>(host)].change;
-    });
-    conditions.apply(nodes.of_field(small_mass_node.node), kick, small_mass_node.mass, mean, work);
-    motion[static_cast<std::size_t>(small_mass_node.node)] = mean;
   }
 }
 
 template <int D>
-void SmallMassNodes<D>::extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid,
-                                             Nodes<D>& nodes)
+void SmallMassNodes<D>::extrapolate(const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions, Nodes<D>& nodes,
+                                    ExactSums<BoundaryWork>& work)
+{
+  SparseRows<NodeMotion<D>>& motion = nodes.motion;
+  send_from_hosts(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, may_host_});
+  for (const Index n : small_) {
+    if (!own.has(n))
+      continue;
+    NodeMotion<D> fitted;
+    for_each_host(n, [&](Index host, Real share) {
+      fitted.v += share * motion[static_cast<std::size_t>(host)].v;
+      fitted.change += share * motion[static_cast<std::size_t>(host)].change;
+    });
+    conditions.apply(nodes.of_field(n), kick, fits_[static_cast<std::size_t>(n)].mass, fitted, work);
+    motion[static_cast<std::size_t>(n)] = fitted;
+  }
+}
+
+template <int D>
+void SmallMassNodes<D>::extrapolate_velocity(const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid, Nodes<D>& nodes)
 {
   SparseRows<NodeMotion<D>>& motion = nodes.remapped;
   send_from_hosts(motion, OfMarked{[](auto& row) { return std::tie(row.v); }, may_host_});
-  for (const SmallMassNode& small_mass_node : small_) {
-    if (!own.has(small_mass_node.node))
+  for (const Index n : small_) {
+    if (!own.has(n))
       continue;
-    Vec<D> mean = Vec<D>::Zero();
-    for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) { mean += share * motion[static_cast<std::size_t>(host)].v; });
-    motion[static_cast<std::size_t>(small_mass_node.node)].v = conditions.held(nodes.of_field(small_mass_node.node), mid, mean);
+    Vec<D> fitted = Vec<D>::Zero();
+    for_each_host(n, [&](Index host, Real share) { fitted += share * motion[static_cast<std::size_t>(host)].v; });
+    motion[static_cast<std::size_t>(n)].v = conditions.held(nodes.of_field(n), mid, fitted);
   }
 }
 

@@ -16,13 +16,15 @@ bool has_own_motion(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
 /// Which nodes have a motion of their own: those with enough mass, or those that had one before, in trials of one increment.
 enum class ActiveNodes : std::uint8_t { by_mass, as_before };
 
-/// The mass, momentum and force of a node of small mass, or of none, go to its host nodes: the active nodes of its first ring, or else of its
-/// second ring, in proportion to their masses.  It moves with the mean velocity of its hosts.  Because one map is the transpose of the
-/// other, momentum is conserved, and a uniform motion stays uniform.  Nodes of negative mass, which the weights of moving least squares
-/// cause at the boundary of a mesh, are treated alike.
+/// A node of small mass, or of none, moves with the linear velocity field that fits its host nodes best, by least squares with their masses:
+/// the active nodes within two rings, each as often as there are ways to it.  Its mass and force go to them in the same shares, some of
+/// which may be negative.  Of its momentum p, with its mass m, a host with the velocity v gets the share of p + m (v - v_fit): no host
+/// changes its velocity where p = m v_fit.  So momentum is conserved, and the motion of a rigid or linearly deformed body stays one, where
+/// the hosts do not lie too close to a line or a plane for a slope across it.  Nodes of negative mass, which the weights of moving least
+/// squares cause at the boundary of a mesh, are treated alike.
 ///
-/// A rank treats the nodes that it owns.  Where hosts of a node belong to another rank, its owner receives their masses, sends them their
-/// shares and receives their motion.
+/// A rank treats the nodes that it owns.  Where hosts of a node belong to another rank, its owner receives their masses and
+/// velocities, sends them the fit and what they get, and receives their motion.
 template <int D>
 class SmallMassNodes {
  public:
@@ -34,37 +36,51 @@ class SmallMassNodes {
   /// Finds the nodes of small mass, sets the active flags of own nodes, and gives mass, momentum and force to the hosts.
   void lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, ActiveNodes which = ActiveNodes::by_mass);
   /// Gives only the momentum to the hosts, after it was summed again.
-  void lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
-  /// Sets the motion of the nodes of small mass: the mean motion of their hosts, under the boundary conditions, which act on the mass of
+  void lump_momentum(const OwnNodes& own, Nodes<D>& nodes);
+  /// Sets the motion of the nodes of small mass: that of the fit to their hosts, under the boundary conditions, which act on the mass of
   /// the node itself.  Their work is added to `work`.
-  void extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions, Nodes<D>& nodes,
+  void extrapolate(const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions, Nodes<D>& nodes,
                    ExactSums<BoundaryWork>& work);
   /// Sets the velocity `v` only, without work.
-  void extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid, Nodes<D>& nodes);
+  void extrapolate_velocity(const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid, Nodes<D>& nodes);
   /// Adds allowed(n, vector) of each node of small mass n to the vectors of its hosts, in their shares.
   template <class Allowed>
-  void give(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors);
-  /// Sets the vector of each node of small mass n to allowed(n, mean of its hosts): the transpose of give().
+  void give(const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors);
+  /// Sets the vector of each node of small mass n to allowed(n, fit to its hosts): the transpose of give().
   template <class Allowed>
-  void take(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors);
-  /// Calls f(host, share) for the hosts of a node of small mass; there are none if no node within two rings is active.
+  void take(const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors);
+  /// Calls f(host, share) for the hosts of a node of small mass; other nodes have none, and it has none if no node within two rings is active.
   template <class F>
-  void for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const;
+  void for_each_host(Index node, F&& f) const;
   Index size() const noexcept { return static_cast<Index>(small_.size()); }
 
  private:
-  struct SmallMassNode {
+  struct Host {
     Index node;
-    Real mass;  ///< mass before it was given to the hosts [kg]
+    Real share;
   };
-  /// Calls f(n, mass) for the active nodes of the first or second ring around a node.
-  template <class F>
-  void for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const;
-  void weigh_hosts(const Mesh<D>& mesh, Index small_mass_node);
+  /// The fit to the hosts of a node of small mass, and what they get.  The share of a host at the distance r with the mass m is
+  /// m (level + slope . r) for each way to it.
+  struct HostFit {
+    Real level{};                      ///< [1/kg]
+    Vec<D> slope = Vec<D>::Zero();     ///< [1/(kg m)]
+    Real mass{};                       ///< [kg]
+    Vec<D> momentum = Vec<D>::Zero();  ///< momentum less mass times velocity of the fit [kg m/s]
+  };
+  /// Lists the active nodes within two rings of each node of small mass, ascending, each with its mass times the number of ways to it in the
+  /// place of its share.
+  void list_hosts(const Mesh<D>& mesh);
+  /// The hosts of a node of small mass.
+  std::span<Host> hosts_of(Index small_mass_node) noexcept;
+  /// Finds the fit of a node of small mass to its hosts, before it sets their shares; level 0 if there are none.
+  void fit_to_hosts(const Mesh<D>& mesh, Index small_mass_node);
+  void set_shares(const Mesh<D>& mesh, Index small_mass_node);
+  /// Sets the momentum that hosts get from a node of small mass with this momentum.
+  void set_momentum(Index small_mass_node, const Vec<D>& momentum);
   /// Calls f(sum of the host, share, sum of the node) for own hosts, with the nodes of small mass in ascending order.
   template <class F>
-  void give_to_hosts(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const;
-  /// Exchanges which nodes near the border between ranks have small mass, and the masses of the nodes around them.
+  void give_to_hosts(const OwnNodes& own, Nodes<D>& nodes, F&& f) const;
+  /// Exchanges which nodes near the border between ranks have small mass, and the masses and velocities of the nodes around them.
   void exchange_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes);
   /// Exchanges messages between the owners of nodes of small mass and the owners of the nodes around them, where there are any.
   template <class What, class Rows>
@@ -72,37 +88,27 @@ class SmallMassNodes {
   template <class What, class Rows>
   void send_from_hosts(Rows&& rows, const What& what);
 
-  std::vector<SmallMassNode> small_;    ///< ascending; own nodes, and those of other ranks that may have own hosts
-  std::vector<Real> weight_;            ///< by node: its mass if it is active, minus the mass of its hosts if its mass is small [kg]
-  std::vector<std::uint8_t> ring_;      ///< by node: the ring of its hosts, 1 or 2; 0 unless its mass is small
-  std::vector<std::uint8_t> may_host_;  ///< by node: active within two rings of a node of small mass of another rank
-  HaloExchange near_;                   ///< between nodes within two rings of each other
+  std::vector<Index> small_;                            ///< ascending; own nodes, and those of other ranks that may have own hosts
+  std::vector<Host> hosts_;                             ///< of all of them, each with its share
+  std::vector<std::size_t> begin_;                      ///< of the hosts of each, and the end
+  SparseRows<std::size_t> place_;                       ///< by node: of those of small mass, in small_
+  std::vector<Real> weight_;                            ///< by node: its mass if it is active, else 0 [kg]
+  std::vector<std::uint8_t> is_small_;                  ///< by node
+  SparseRows<Vec<D>> velocity_;                         ///< by node: of active ones, before they get anything [m/s]
+  SparseRows<HostFit> fits_;                            ///< by node: of those of small mass
+  std::vector<std::uint8_t> may_host_;                  ///< by node: active within two rings of a node of small mass of another rank
+  HaloExchange near_;                                   ///< between nodes within two rings of each other
   std::vector<std::uint8_t> small_here_, small_there_;  ///< by border: whether there are nodes of small mass on either side
 };
 
 template <int D>
 template <class F>
-void SmallMassNodes<D>::for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const
+void SmallMassNodes<D>::for_each_host(Index node, F&& f) const
 {
-  const auto visit = [&](Index n) {
-    if (const Real mass = weight_[static_cast<std::size_t>(n)]; mass > 0)
-      f(n, mass);
-  };
-  for (const Index n : mesh.ring_of_node()[node])
-    if (ring == 1)
-      visit(n);
-    else  // a node may be visited more than once, which increases its weight
-      std::ranges::for_each(mesh.ring_of_node()[n], visit);
-}
-
-template <int D>
-template <class F>
-void SmallMassNodes<D>::for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const
-{
-  const auto n = static_cast<std::size_t>(small_mass_node);
-  const Real total = -weight_[n];
-  if (total > 0)
-    for_each_active_around(mesh, small_mass_node, ring_[n], [&](Index host, Real mass) { f(host, mass / total); });
+  const auto n = static_cast<std::size_t>(node);
+  if (is_small_[n] != 0)
+    for (std::size_t i = begin_[place_[n]]; i < begin_[place_[n] + 1]; ++i)
+      f(hosts_[i].node, hosts_[i].share);
 }
 
 template <int D>
@@ -127,30 +133,30 @@ void SmallMassNodes<D>::send_from_hosts(Rows&& rows, const What& what)
 
 template <int D>
 template <class Allowed>
-void SmallMassNodes<D>::give(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors)
+void SmallMassNodes<D>::give(const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors)
 {
-  for (const SmallMassNode& one : small_)
-    if (own.has(one.node))
-      vectors[static_cast<std::size_t>(one.node)] = allowed(one.node, vectors[static_cast<std::size_t>(one.node)]);
-  send_to_hosts(vectors, OfMarked{itself, ring_});
-  for (const SmallMassNode& one : small_)
-    for_each_host(mesh, one.node, [&](Index host, Real share) {
+  for (const Index n : small_)
+    if (own.has(n))
+      vectors[static_cast<std::size_t>(n)] = allowed(n, vectors[static_cast<std::size_t>(n)]);
+  send_to_hosts(vectors, OfMarked{itself, is_small_});
+  for (const Index n : small_)
+    for_each_host(n, [&](Index host, Real share) {
       if (own.has(host))
-        vectors[static_cast<std::size_t>(host)] += share * vectors[static_cast<std::size_t>(one.node)];
+        vectors[static_cast<std::size_t>(host)] += share * vectors[static_cast<std::size_t>(n)];
     });
 }
 
 template <int D>
 template <class Allowed>
-void SmallMassNodes<D>::take(const Mesh<D>& mesh, const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors)
+void SmallMassNodes<D>::take(const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors)
 {
   send_from_hosts(vectors, OfMarked{itself, may_host_});
-  for (const SmallMassNode& one : small_) {
-    if (!own.has(one.node))
+  for (const Index n : small_) {
+    if (!own.has(n))
       continue;
-    Vec<D> mean = Vec<D>::Zero();
-    for_each_host(mesh, one.node, [&](Index host, Real share) { mean += share * vectors[static_cast<std::size_t>(host)]; });
-    vectors[static_cast<std::size_t>(one.node)] = allowed(one.node, mean);
+    Vec<D> fitted = Vec<D>::Zero();
+    for_each_host(n, [&](Index host, Real share) { fitted += share * vectors[static_cast<std::size_t>(host)]; });
+    vectors[static_cast<std::size_t>(n)] = allowed(n, fitted);
   }
 }
 

@@ -156,13 +156,13 @@ void FlowSystem<D>::push(const FlowModel<D>& m, std::vector<Real>& x)
   const NodesInUse& in_use = m.field.nodes.in_use;
   in_use.for_each([&](Index n) { force_[to_size(n)] = sees_water(n) ? force_at(m.mesh, n, x) : Vec<D>(Vec<D>::Zero()); });
   m.field.small_mass_nodes.give(
-      m.mesh, m.own, [&](Index n, const Vec<D>& f) -> Vec<D> { return free_[to_size(n)] * f; }, force_);
+      m.own, [&](Index n, const Vec<D>& f) -> Vec<D> { return free_[to_size(n)] * f; }, force_);
   in_use.for_each([&](Index n) {
     velocity_[to_size(n)] =
         m.own.has(n) ? Vec<D>(lightness_[to_size(n)] * (free_[to_size(n)] * force_[to_size(n)])) : Vec<D>(Vec<D>::Zero());
   });
   m.field.small_mass_nodes.take(
-      m.mesh, m.own, [&](Index n, const Vec<D>& v) -> Vec<D> { return free_[to_size(n)] * v; }, velocity_);
+      m.own, [&](Index n, const Vec<D>& v) -> Vec<D> { return free_[to_size(n)] * v; }, velocity_);
   send(velocity_);
 }
 

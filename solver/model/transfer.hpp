@@ -46,6 +46,8 @@ class Transfer {
 
   /// Whether strips are to hold the gradients of particles; otherwise find_gradients() computes them again.
   virtual bool keeps_gradients() const = 0;
+  /// Whether gradients at particles are interpolated between means over the cells around nodes, averaged_gradients().
+  virtual bool averages_gradients() const = 0;
   /// Adds the particles, as they are, to the rows of their blocks; to be called before the first step after they came into strips.
   virtual void sum_strips(Model<D>& m) = 0;
   /// Sets L and C of the columns of a strip to what they were at the end of the last step, in memory of the calling thread.  May be

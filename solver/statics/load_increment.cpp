@@ -58,7 +58,7 @@ template <int D>
 void LoadIncrement<D>::set_stiffness()
 {
   const Problem<D>& problem = m_.problem;
-  elastic_ = ElasticStiffness<D>(problem.mesh, m_.state);
+  elastic_ = ElasticStiffness<D>(problem.mesh, m_.state, m_.transfer->averages_gradients());
   jumps_.set_stiffness(problem, elastic_);
   jumps_.for_each_cell([&](Index c, Real stiffness) {
     if (problem.subdomain.alone() || problem.subdomain.owns_cell(c))
@@ -73,7 +73,7 @@ void LoadIncrement<D>::find_jump_forces()
 {
   jumps_.find(m_.problem, *m_.work.strips);
   m_.work.fields.front().small_mass_nodes.give(
-      m_.problem.mesh, m_.problem.own, [](Index, const Vec<D>& force) { return force; }, jumps_.of_nodes());
+      m_.problem.own, [](Index, const Vec<D>& force) { return force; }, jumps_.of_nodes());
 }
 
 /// Which changes of displacement the conditions leave free, as they were in the last trial.
@@ -100,7 +100,7 @@ void LoadIncrement<D>::add_stiffness(const std::function<void(std::int64_t, std:
     if (unknowns_.has(n))
       f(n, Real{1});
     else
-      m_.work.fields.front().small_mass_nodes.for_each_host(mesh, n, [&](Index host, Real share) {
+      m_.work.fields.front().small_mass_nodes.for_each_host(n, [&](Index host, Real share) {
         if (unknowns_.has(host))
           f(host, share);
       });
@@ -109,9 +109,9 @@ void LoadIncrement<D>::add_stiffness(const std::function<void(std::int64_t, std:
     const Index k = unknowns_.row[to_size(n)];
     return k != none ? free_[to_size(k)] : m_.state.boundary.free_changes(nodes().of_field(n), Vec<D>::Zero());
   };
-  elastic_.for_each_block(mesh, [&](Index c, std::size_t a, std::size_t b, const Mat<D>& block) {
-    for_each_mover(mesh.cell(c)[a], [&](Index i, Real share_i) {
-      for_each_mover(mesh.cell(c)[b], [&](Index j, Real share_j) { add_block(i, j, share_i * share_j * freedom(i) * block); });
+  elastic_.for_each_block(mesh, [&](Index a, Index b, const Mat<D>& block) {
+    for_each_mover(a, [&](Index i, Real share_i) {
+      for_each_mover(b, [&](Index j, Real share_j) { add_block(i, j, share_i * share_j * freedom(i) * block); });
     });
   });
   for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
@@ -149,8 +149,7 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
     nodes().motion[to_size(unknowns_.node[k])].v = displacement(x, k) / dt_;
   const Kick kick{time_, time_ + dt_ / 2};
-  work.fields.front().small_mass_nodes.extrapolate(m_.problem.mesh, m_.problem.own, kick, m_.state.boundary, nodes(),
-                                                   work.sums.beyond_nodes);
+  work.fields.front().small_mass_nodes.extrapolate(m_.problem.own, kick, m_.state.boundary, nodes(), work.sums.beyond_nodes);
   if (then == Then::stay)
     record_work(x);
   else if (then == Then::forces)

@@ -96,7 +96,7 @@ class Remap {
     }
     m_.work.sheets.unite_momentum(m_.work.fields);
     for (VelocityField<D>& field : m_.work.fields)
-      field.small_mass_nodes.lump_momentum(m_.problem.mesh, m_.problem.own, field.nodes);
+      field.small_mass_nodes.lump_momentum(m_.problem.own, field.nodes);
   }
   /// The velocities of this momentum under boundary conditions and contacts, which start to go to other ranks.
   void find_velocities(Real mid)
@@ -123,7 +123,7 @@ class Remap {
   void send_velocities(Real time)
   {
     for (VelocityField<D>& field : m_.work.fields)
-      field.small_mass_nodes.extrapolate_velocity(m_.problem.mesh, m_.problem.own, m_.state.boundary, time, field.nodes);
+      field.small_mass_nodes.extrapolate_velocity(m_.problem.own, m_.state.boundary, time, field.nodes);
     m_.work.sheets.copy_to_field_behind(
         std::span(m_.work.fields), [](Nodes<D> & nodes) -> auto& { return nodes.remapped; });
     for (Rows& of : fields_)

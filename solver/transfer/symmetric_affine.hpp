@@ -114,34 +114,34 @@ void find_changes_of_nodes(Model<D>& m, KernelRows<D, K>& of)
   Nodes<D>& nodes = nodes_of(m, of);
   const OwnNodes& own = m.problem.own;
   assemble<MomentumAlone>(of.blocks, own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, [] {});
+  std::vector<Vec<D>>& changes = of.changes_of_nodes;  // first momenta
   nodes.in_use.for_each([&](Index v) {
-    if (!own.has(v))
-      return;
     Vec<D> momentum = Vec<D>::Zero();
-    of.kernel.node_operators().for_each_in_column(v, [&](Index n, Real, const Vec<D>& gradient) {
-      const ProjectedNodeSum<D>& on_hat = of.projected.sum[static_cast<std::size_t>(n)];
-      if (on_hat.is_seen())
-        momentum += pull_of<D>(on_hat.affine, gradient);
-    });
-    nodes.sum[static_cast<std::size_t>(v)].momentum = momentum;
+    if (own.has(v))
+      of.kernel.node_operators().for_each_in_column(v, [&](Index n, Real, const Vec<D>& gradient) {
+        const ProjectedNodeSum<D>& on_hat = of.projected.sum[static_cast<std::size_t>(n)];
+        if (on_hat.is_seen())
+          momentum += pull_of<D>(on_hat.affine, gradient);
+      });
+    changes[static_cast<std::size_t>(v)] = momentum;
   });
   SmallMassNodes<D>& small = m.work.fields[of.field].small_mass_nodes;
-  small.lump_momentum(m.problem.mesh, own, nodes);
+  small.give(
+      own, [](Index, const Vec<D>& momentum) { return momentum; }, changes);
   const auto free = [&](Index n, const Vec<D>& change) {
     const auto i = static_cast<std::size_t>(n);
     return leave_free(m, n, nodes.motion[i].v, nodes.sum[i].mass, change);
   };
-  std::vector<Vec<D>>& changes = of.changes_of_nodes;
   nodes.in_use.for_each([&](Index n) {
     const auto i = static_cast<std::size_t>(n);
-    changes[i] = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
+    changes[i] = nodes.active[i] ? Vec<D>(changes[i] / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
   });
   m.state.boundary.for_each_node([&](Index n) {
     const auto i = static_cast<std::size_t>(n);
     if (nodes.active[i])
       changes[i] = free(n, changes[i]);
   });
-  small.take(m.problem.mesh, own, free, changes);
+  small.take(own, free, changes);
   nodes.in_use.for_each([&](Index n) {
     nodes.remapped[static_cast<std::size_t>(n)] = {changes[static_cast<std::size_t>(n)], Vec<D>::Zero()};
   });

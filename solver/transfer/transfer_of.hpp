@@ -53,6 +53,7 @@ class TransferOf final : public Transfer<D> {
   }
 
   bool keeps_gradients() const override { return Sweep::keeps_gradients; }
+  bool averages_gradients() const override { return Rows::projects; }
   void sum_strips(Model<D>& m) override
   {
     for (Rows& of : fields_) {

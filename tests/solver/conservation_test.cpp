@@ -84,7 +84,7 @@ TYPED_TEST(EveryKernelAndTransfer, KeepMassAndMomentumOfAFreeBlock)
   EXPECT_GT(m.state.particles.stress[0].norm(), 1) << "the block must have been strained for this to mean anything";
 }
 
-/// Nodes of very small mass hand their forces on to places nearby: a small moment.
+/// Where their hosts lie on a line, nodes of small mass hand their forces on to other places: a small moment.
 TYPED_TEST(EveryKernelAndTransfer, InternalForcesExertNoMoment)
 {
   auto m = flying_block<TypeParam>();

@@ -90,6 +90,40 @@ time: {{end: 1}}
   EXPECT_THAT(talus("check fine.yaml").err, testing::Not(HasSubstr("softening_length")));
 }
 
+TEST_F(CheckCells, WarnsOfARandomFieldThatVariesWithinCells)
+{
+  const auto scene = [](double length) {
+    return fmt::format(R"(title: Random strength
+dimension: 2
+mesh: {{grid: {{low: [0, 0], high: [4, 3], cells: [16, 12]}}}}
+materials:
+  - name: clay
+    law: von_mises
+    density: 2000
+    youngs_modulus: 1.0e6
+    poisson_ratio: 0.3
+    yield_stress: 1.0e4
+    variation:
+      - {{parameter: yield_stress, coefficient_of_variation: 1, correlation_length: [{}]}}
+bodies:
+  - {{name: slope, material: clay, shape: {{type: box, low: [0, 0], high: [4, 2]}}}}
+boundaries: [{{type: fixed, on: y_min}}]
+time: {{end: 1}}
+)",
+                       length);
+  };
+  write("uneven.yaml", scene(0.8));
+  write("even.yaml", scene(2));
+  // log(2) / 2 (1 - exp(-0.285 / 0.8)) = 0.104; of 0.05 at 0.125 m
+  EXPECT_THAT(
+      talus("check uneven.yaml").err,
+      HasSubstr(
+          "uneven.yaml:12:9: yield_stress varies within the cells of 0.285 m of body \"slope\": their mean is about 10 % above the "
+          "geometric mean, which counts along a slip surface; if it is a strength, failure may be found too seldom (unsafe): take cells "
+          "of at most 0.12 m where it fails"));
+  EXPECT_THAT(talus("check even.yaml").err, testing::Not(HasSubstr("unsafe")));
+}
+
 }  // namespace
 
 }  // namespace talus::check_cells_test

@@ -21,7 +21,7 @@ Nodes<2> nodes_of(const Mesh<2>& mesh)
   return nodes;
 }
 
-TEST(SmallMassNodes, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
+TEST(SmallMassNodes, HandOnEverythingTheyHoldAndMoveWithTheirHosts)
 {
   const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
   Nodes<2> nodes = nodes_of(mesh);
@@ -49,9 +49,78 @@ TEST(SmallMassNodes, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
     row = {Vec<2>(3, -2), Vec<2>(0.5, 0)};
   BoundaryConditions<2> none_at_all;
   ExactSums<BoundaryWork> work;
-  small_mass_nodes.extrapolate(mesh, all_nodes(mesh), Kick{}, none_at_all, nodes, work);
+  small_mass_nodes.extrapolate(all_nodes(mesh), Kick{}, none_at_all, nodes, work);
   for (const auto& row : nodes.motion)
     EXPECT_LT((row.v - Vec<2>(3, -2)).norm() + (row.change - Vec<2>(0.5, 0)).norm(), 1e-14) << "a uniform motion stays one";
+}
+
+/// A body that turns and is strained: the column of nodes of small mass, beside the others and not between them, moves with it.
+TEST(SmallMassNodes, KeepALinearVelocityField)
+{
+  const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
+  Nodes<2> nodes = nodes_of(mesh);
+  const Mat<2> slope{{0.3, -2}, {1.5, 0.7}};
+  const auto velocity = [&](Index n) { return Vec<2>(Vec<2>(3, -2) + slope * mesh.node(n)); };
+  Vec<2> before = Vec<2>::Zero();
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    NodeSum<2>& sum = nodes.sum[static_cast<std::size_t>(n)];
+    sum.mass = mesh.node(n)[0] < 0.1 ? 1e-3 * static_cast<Real>(n - 5) : 1 + 0.1 * static_cast<Real>(n);
+    sum.lightest = 1;
+    sum.momentum = sum.mass * velocity(n);
+    before += sum.momentum;
+  }
+  nodes.least_share = 0.1;
+  SmallMassNodes<2> small_mass_nodes;
+  small_mass_nodes.lump(mesh, all_nodes(mesh), nodes);
+  ASSERT_EQ(small_mass_nodes.size(), 4);
+  Vec<2> after = Vec<2>::Zero();
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    if (nodes.active[i]) {
+      nodes.motion[i] = {nodes.sum[i].momentum / nodes.sum[i].mass, Vec<2>(slope * mesh.node(n))};
+      EXPECT_LT((nodes.motion[i].v - velocity(n)).norm(), 1e-13);
+      after += nodes.sum[i].momentum;
+    }
+  }
+  EXPECT_LT((after - before).norm(), 1e-12);
+  BoundaryConditions<2> none_at_all;
+  ExactSums<BoundaryWork> work;
+  small_mass_nodes.extrapolate(all_nodes(mesh), Kick{}, none_at_all, nodes, work);
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    EXPECT_LT((nodes.motion[static_cast<std::size_t>(n)].v - velocity(n)).norm() +
+                  (nodes.motion[static_cast<std::size_t>(n)].change - slope * mesh.node(n)).norm(),
+              1e-13);
+}
+
+/// Hosts on a line tell nothing of a slope across it, and a single one of no slope at all.
+TEST(SmallMassNodes, MoveWithTheMeanWhereHostsLieOnALine)
+{
+  const Mesh<2> mesh(box<2>({0, 0}, {3, 3}, {3, 3}));
+  for (const Real end : {2.5, 0.5}) {  // three hosts at y = 0 beside the node at (3, 1), or one
+    Nodes<2> nodes = nodes_of(mesh);
+    Index outside = none;
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      const Vec<2> x = mesh.node(n);
+      NodeSum<2>& sum = nodes.sum[static_cast<std::size_t>(n)];
+      if (x[1] < 0.5 && x[0] > 3 - end - 0.1)
+        sum.mass = 1, sum.momentum = Vec<2>(x[0], 1);
+      else if ((x - Vec<2>(3, 1)).norm() < 0.1)
+        sum.mass = 1e-10, outside = n;
+      else
+        continue;
+      sum.lightest = 1;
+    }
+    SmallMassNodes<2> small_mass_nodes;
+    small_mass_nodes.lump(mesh, all_nodes(mesh), nodes);
+    ASSERT_EQ(small_mass_nodes.size(), 1);
+    for (std::size_t i = 0; i < nodes.sum.size(); ++i)
+      if (nodes.active[i])
+        nodes.motion[i].v = nodes.sum[i].momentum / nodes.sum[i].mass;
+    BoundaryConditions<2> none_at_all;
+    ExactSums<BoundaryWork> work;
+    small_mass_nodes.extrapolate(all_nodes(mesh), Kick{}, none_at_all, nodes, work);
+    EXPECT_LT((nodes.motion[static_cast<std::size_t>(outside)].v - Vec<2>(3, 1)).norm(), 1e-9) << "the slope along the line is known";
+  }
 }
 
 /// One particle dragged across a vertex meets nodes of vanishing mass on its way; nothing acts on it.

@@ -63,7 +63,7 @@ std::array<Real, 3> work_of_random_changes(bool held)
     if (field.nodes.active[i])
       on_nodes += field.nodes.sum[i].momentum.dot(change), scale += std::abs(field.nodes.sum[i].momentum.dot(change));
   });
-  field.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, Kick{}, m.state.boundary, field.nodes, m.work.sums.beyond_nodes);
+  field.small_mass_nodes.extrapolate(m.problem.own, Kick{}, m.state.boundary, field.nodes, m.work.sums.beyond_nodes);
   m.work.stress_sums.assign(m.work.strips->keys(), {});
   m.transfer->nodes_to_particles(m, Kick{}, 0, {});
   end_sweeps(m);

@@ -1,8 +1,11 @@
-#include "app/setup/checks/softening_cells.hpp"
+#include "app/setup/checks/coarse_cells.hpp"
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/parallel/exact_sum.hpp"
+#include "materials/interface/varied_law.hpp"
 
 namespace talus {
 
@@ -23,6 +26,36 @@ Real mean_edge(const Mesh<D>& mesh, Index cell)
   return sum / (D * (D + 1) / 2);
 }
 
+/// From about this excess of the strength of cells on, shares of slopes that fail were found to depend on the cells, see benchmarks/random_slope.
+constexpr Real largest_unevenness = 0.05;
+
+/// How uneven values are within cells: between places half an edge apart.
+template <int D>
+Real unevenness_in_cells(const ParameterVariation& variation, Real edge)
+{
+  Vec3 apart = Vec3::Zero();
+  apart.head<D>().setConstant(edge / 2 / std::sqrt(D));
+  return variation.unevenness(apart);
+}
+
+template <int D>
+void warn_of_uneven_cells(const std::string& body, const VariedLaw& law, Real edge, std::vector<std::string>& warnings)
+{
+  for (const ParameterVariation& one : law.variation()) {
+    const Real unevenness = unevenness_in_cells<D>(one, edge);
+    if (unevenness <= largest_unevenness)
+      continue;
+    Real enough = edge;
+    while (unevenness_in_cells<D>(one, enough) > largest_unevenness)
+      enough *= 0.99;
+    warnings.push_back(fmt::format(
+        "{}: {} varies within the cells of {:.3g} m of body \"{}\": their mean is about {:.0f} % above the geometric mean, which counts "
+        "along "
+        "a slip surface; if it is a strength, failure may be found too seldom (unsafe): take cells of at most {:.2g} m where it fails",
+        to_string(one.where), one.parameter, edge, body, 100 * unevenness, enough));
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -31,7 +64,8 @@ void warn_of_coarse_cells(const Scene& scene, const Mesh<D>& mesh, const Particl
 {
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     const auto averaging = materials[body].law().strain_averaging();
-    if (!averaging)
+    const auto* const varied = dynamic_cast<const VariedLaw*>(&materials[body].law());
+    if (!averaging && varied == nullptr)
       continue;
     ExactSums<Real> edges;
     for (Index row = bodies[body].begin; row < bodies[body].end; ++row)
@@ -39,7 +73,11 @@ void warn_of_coarse_cells(const Scene& scene, const Mesh<D>& mesh, const Particl
     const std::int64_t count = ranks.sum(std::int64_t{bodies[body].end - bodies[body].begin});
     ranks.sum(edges);
     const Real edge = edges.value() / static_cast<Real>(count);
-    if (count > 0 && averaging->band < cells_of_a_band * edge)
+    if (count == 0)
+      continue;
+    if (varied != nullptr)
+      warn_of_uneven_cells<D>(bodies[body].name, *varied, edge, warnings);
+    if (averaging && averaging->band < cells_of_a_band * edge)
       warnings.push_back(fmt::format(
           "{}: body \"{}\" has cells of {:.3g} m where bands of failure are {:.3g} m wide by its softening_length: they need six "
           "cells or more to be as wide on any mesh; take cells of at most {:.3g} m where it fails",
