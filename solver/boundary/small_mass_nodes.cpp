@@ -39,10 +39,17 @@ void SmallMassNodes<D>::list_hosts(const Mesh<D>& mesh)
     place_[static_cast<std::size_t>(node)] = begin_.size();
     begin_.push_back(hosts_.size());
     const auto first = static_cast<std::ptrdiff_t>(hosts_.size());
-    for (const Index between : mesh.ring_of_node()[node])
-      for (const Index n : mesh.ring_of_node()[between])
-        if (const Real mass = weight_[static_cast<std::size_t>(n)]; mass > 0)
-          hosts_.push_back({n, mass});
+    const auto& ring = mesh.ring_of_node();
+    const auto is_active = [&](Index n) { return weight_[static_cast<std::size_t>(n)] > 0; };
+    const bool alone = std::ranges::none_of(ring[node], is_active);
+    const auto is_near = [&](Index n) {  // itself or beside an active node beside this one
+      return std::ranges::any_of(ring[n],
+                                 [&](Index beside) { return is_active(beside) && std::ranges::binary_search(ring[node], beside); });
+    };
+    for (const Index between : ring[node])
+      for (const Index n : ring[between])
+        if (is_active(n) && (alone || is_near(n)))
+          hosts_.push_back({n, weight_[static_cast<std::size_t>(n)]});
     std::ranges::sort(hosts_.begin() + first, hosts_.end(), {}, &Host::node);
     std::size_t last = begin_.back();
     for (std::size_t i = last + 1; i < hosts_.size(); ++i)

@@ -17,7 +17,8 @@ bool has_own_motion(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
 enum class ActiveNodes : std::uint8_t { by_mass, as_before };
 
 /// A node of small mass, or of none, moves with the linear velocity field that fits its host nodes best, by least squares with their masses:
-/// the active nodes within two rings, each as often as there are ways to it.  Its mass and force go to them in the same shares, some of
+/// the active nodes beside it and those beside them, each as often as there are ways to it; or, where none is beside it, all within two
+/// rings.  (So a body across a gap is not among them.)  Its mass and force go to them in the same shares, some of
 /// which may be negative.  Of its momentum p, with its mass m, a host with the velocity v gets the share of p + m (v - v_fit): no host
 /// changes its velocity where p = m v_fit.  So momentum is conserved, and the motion of a rigid or linearly deformed body stays one, where
 /// the hosts do not lie too close to a line or a plane for a slope across it.  Nodes of negative mass, which the weights of moving least
@@ -67,8 +68,7 @@ class SmallMassNodes {
     Real mass{};                       ///< [kg]
     Vec<D> momentum = Vec<D>::Zero();  ///< momentum less mass times velocity of the fit [kg m/s]
   };
-  /// Lists the active nodes within two rings of each node of small mass, ascending, each with its mass times the number of ways to it in the
-  /// place of its share.
+  /// Lists the hosts of each node of small mass, ascending, each with its mass times the number of ways to it in the place of its share.
   void list_hosts(const Mesh<D>& mesh);
   /// The hosts of a node of small mass.
   std::span<Host> hosts_of(Index small_mass_node) noexcept;
