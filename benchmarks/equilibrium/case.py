@@ -7,7 +7,7 @@ import lab as tools
 CASE = "equilibrium"
 PLACES = {"quick": (0,), "full": (0, 0.13, 0.31)}  # m: so much is the mesh wider, and gmsh makes other triangles
 COLUMN = {"quick": (2.5, 1.25), "full": (2.5, 1.25, 0.625)}  # m, cells
-MEMBRANE = {"quick": (("0.3", 4, 2), ("0.3", 4, 20), ("0.3", 2, 2), ("0.499", 4, 2)),  # Poisson's ratio, cells [m], increments
+MEMBRANE = {"quick": (("0.3", 4, 2), ("0.3", 4, 20), ("0.3", 2, 2), ("0.499", 4, 2), ("0.499", 2, 2)),  # Poisson's ratio, cells [m], increments
             "full": (("0.3", 4, 20), *((nu, size, 2) for nu in ("0.3", "0.499", "0.49999") for size in (4, 2, 1)))}
 FOOTING = {"quick": ((1, 50), (0.5, 50)),  # cells [m], increments
            "full": ((1, 25), (1, 50), (1, 100), (0.5, 25), (0.5, 50), (0.5, 100), (0.25, 50))}

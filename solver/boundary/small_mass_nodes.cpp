@@ -24,49 +24,51 @@ struct Together {
 
 }  // namespace
 
-/// The fit has a slope along the principal axes in which the variance of the places of the hosts is at least this share of their mean squared
-/// distance, and a smaller one in proportion below it.
+/// The fit has a slope along the principal axes in which the variance of the places of the hosts is at least this share of their mean
+/// squared distance, and a smaller one in proportion below it.
 constexpr Real least_spread = 0.05;
-/// And none if a host would lose more than this share of its mass.
-constexpr Real largest_loss = 0.5;
+/// And none if a host would lose more than this share of its mass; several nodes of small mass may have the same host.
+constexpr Real largest_loss = 0.1;
 
 template <int D>
-void SmallMassNodes<D>::list_hosts(const Mesh<D>& mesh)
+void SmallMassNodes<D>::list_hosts(const Mesh<D>& mesh, std::size_t place)
 {
-  hosts_.clear();
-  begin_.clear();
-  for (const Index node : small_) {
-    place_[static_cast<std::size_t>(node)] = begin_.size();
-    begin_.push_back(hosts_.size());
-    const auto first = static_cast<std::ptrdiff_t>(hosts_.size());
-    const auto& ring = mesh.ring_of_node();
-    const auto is_active = [&](Index n) { return weight_[static_cast<std::size_t>(n)] > 0; };
-    const bool alone = std::ranges::none_of(ring[node], is_active);
-    const auto is_near = [&](Index n) {  // itself or beside an active node beside this one
-      return std::ranges::any_of(ring[n],
-                                 [&](Index beside) { return is_active(beside) && std::ranges::binary_search(ring[node], beside); });
-    };
-    for (const Index between : ring[node])
-      for (const Index n : ring[between])
-        if (is_active(n) && (alone || is_near(n)))
-          hosts_.push_back({n, weight_[static_cast<std::size_t>(n)]});
-    std::ranges::sort(hosts_.begin() + first, hosts_.end(), {}, &Host::node);
-    std::size_t last = begin_.back();
-    for (std::size_t i = last + 1; i < hosts_.size(); ++i)
-      if (hosts_[i].node == hosts_[last].node)
-        hosts_[last].share += hosts_[i].share;
-      else
-        hosts_[++last] = hosts_[i];
-    hosts_.resize(std::min(hosts_.size(), last + 1));
-  }
-  begin_.push_back(hosts_.size());
+  const Index node = small_[place];
+  const auto& ring = mesh.ring_of_node();
+  const std::uint64_t beside = fits_[static_cast<std::size_t>(node)].beside;
+  const std::size_t begin = hosts_.size();
+  const auto first = static_cast<std::ptrdiff_t>(begin);
+  for (const Index between : ring[node])
+    for (const Index n : ring[between])
+      if (const Real mass = weight_[static_cast<std::size_t>(n)]; mass > 0)
+        hosts_.push_back({n, mass});
+  std::ranges::sort(hosts_.begin() + first, hosts_.end(), {}, &Host::node);
+  std::size_t last = begin;
+  for (std::size_t i = begin + 1; i < hosts_.size(); ++i)
+    if (hosts_[i].node == hosts_[last].node)
+      hosts_[last].share += hosts_[i].share;
+    else
+      hosts_[++last] = hosts_[i];
+  hosts_.resize(std::min(hosts_.size(), last + 1));
+  const auto is_far = [&](const Host& host) {  // neither beside the node nor beside an active node that is
+    std::uint64_t bit = 1;
+    for (const Index near : ring[node]) {
+      if ((beside & bit) != 0 && std::ranges::binary_search(ring[host.node], near))
+        return false;
+      bit <<= 1;
+    }
+    return beside != 0;
+  };
+  hosts_.erase(std::remove_if(hosts_.begin() + first, hosts_.end(), is_far), hosts_.end());
+  ranges_[place] = {begin, hosts_.size()};
+  place_[static_cast<std::size_t>(node)] = place;
 }
 
 template <int D>
 auto SmallMassNodes<D>::hosts_of(Index small_mass_node) noexcept -> std::span<Host>
 {
-  const std::size_t place = place_[static_cast<std::size_t>(small_mass_node)];
-  return std::span(hosts_).subspan(begin_[place], begin_[place + 1] - begin_[place]);
+  const HostRange& range = ranges_[place_[static_cast<std::size_t>(small_mass_node)]];
+  return std::span(hosts_).subspan(range.begin, range.end - range.begin);
 }
 
 template <int D>
@@ -171,11 +173,18 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
     exchange_neighbours(mesh, nodes);
     std::ranges::sort(small_);
   }
-  list_hosts(mesh);
-  for (const Index node : small_)
-    if (own.has(node)) {
+  hosts_.clear();
+  ranges_.resize(small_.size());
+  for (std::size_t place = 0; place < small_.size(); ++place)
+    if (const Index node = small_[place]; own.has(node)) {
       const NodeSum<D>& sum = nodes.sum[static_cast<std::size_t>(node)];
-      fits_[static_cast<std::size_t>(node)].mass = sum.mass;
+      HostFit& fit = fits_[static_cast<std::size_t>(node)];
+      fit.mass = sum.mass;
+      fit.beside = 0;
+      std::uint64_t bit = 1;
+      for (const Index near : mesh.ring_of_node()[node])
+        fit.beside |= weight_[static_cast<std::size_t>(near)] > 0 ? bit : 0, bit <<= 1;
+      list_hosts(mesh, place);
       fit_to_hosts(mesh, node);
       set_shares(mesh, node);
       set_momentum(node, sum.momentum);
@@ -183,12 +192,14 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
   using Rows = Together<SparseRows<NodeSum<D>>, SparseRows<HostFit>>;
   const auto parts = [](const std::tuple<NodeSum<D>&, HostFit&>& row) {
     const auto& [sum, fit] = row;
-    return std::tie(sum.force, fit.level, fit.slope, fit.mass, fit.momentum);
+    return std::tie(sum.force, fit.level, fit.slope, fit.beside, fit.mass, fit.momentum);
   };
   send_to_hosts(Rows{{nodes.sum, fits_}}, OfMarked{parts, is_small_});
-  for (const Index node : small_)
-    if (!own.has(node))
-      set_shares(mesh, node);
+  for (std::size_t place = 0; place < small_.size(); ++place)
+    if (!own.has(small_[place])) {
+      list_hosts(mesh, place);
+      set_shares(mesh, small_[place]);
+    }
   give_to_hosts(own, nodes, [](NodeSum<D>& to, Real share, const HostFit& fit, const Vec<D>& velocity, const NodeSum<D>& from) {
     to.mass += share * fit.mass;
     to.momentum += share * (fit.momentum + fit.mass * velocity);

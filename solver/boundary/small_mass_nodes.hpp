@@ -16,13 +16,13 @@ bool has_own_motion(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
 /// Which nodes have a motion of their own: those with enough mass, or those that had one before, in trials of one increment.
 enum class ActiveNodes : std::uint8_t { by_mass, as_before };
 
-/// A node of small mass, or of none, moves with the linear velocity field that fits its host nodes best, by least squares with their masses:
-/// the active nodes beside it and those beside them, each as often as there are ways to it; or, where none is beside it, all within two
-/// rings.  (So a body across a gap is not among them.)  Its mass and force go to them in the same shares, some of
-/// which may be negative.  Of its momentum p, with its mass m, a host with the velocity v gets the share of p + m (v - v_fit): no host
-/// changes its velocity where p = m v_fit.  So momentum is conserved, and the motion of a rigid or linearly deformed body stays one, where
-/// the hosts do not lie too close to a line or a plane for a slope across it.  Nodes of negative mass, which the weights of moving least
-/// squares cause at the boundary of a mesh, are treated alike.
+/// A node of small mass, or of none, moves with the linear velocity field that fits its host nodes best, by least squares with their
+/// masses: the active nodes beside it and those beside them, each as often as there are ways of two steps to it; where none is beside it,
+/// all active nodes within two rings.  (So a body across a gap counts only where no other is near.)  Its mass and force go to them in the same
+/// shares, some of which may be negative.  Of its momentum p, with its mass m, a host with the velocity v gets the share of
+/// p + m (v - v_fit): no host changes its velocity where p = m v_fit.  So momentum is conserved, and the motion of a rigid or linearly
+/// deformed body stays one, where the hosts do not lie too close to a line or a plane for a slope across it.  Nodes of negative mass, which
+/// the weights of moving least squares cause at the boundary of a mesh, are treated alike.
 ///
 /// A rank treats the nodes that it owns.  Where hosts of a node belong to another rank, its owner receives their masses and
 /// velocities, sends them the fit and what they get, and receives their motion.
@@ -50,7 +50,8 @@ class SmallMassNodes {
   /// Sets the vector of each node of small mass n to allowed(n, fit to its hosts): the transpose of give().
   template <class Allowed>
   void take(const OwnNodes& own, Allowed&& allowed, std::vector<Vec<D>>& vectors);
-  /// Calls f(host, share) for the hosts of a node of small mass; other nodes have none, and it has none if no node within two rings is active.
+  /// Calls f(host, share) for the hosts of a node of small mass.  Other nodes have none, and it has none if no node within two rings is
+  /// active.
   template <class F>
   void for_each_host(Index node, F&& f) const;
   Index size() const noexcept { return static_cast<Index>(small_.size()); }
@@ -60,16 +61,21 @@ class SmallMassNodes {
     Index node;
     Real share;
   };
+  struct HostRange {
+    std::size_t begin, end;
+  };
   /// The fit to the hosts of a node of small mass, and what they get.  The share of a host at the distance r with the mass m is
   /// m (level + slope . r) for each way to it.
   struct HostFit {
     Real level{};                      ///< [1/kg]
     Vec<D> slope = Vec<D>::Zero();     ///< [1/(kg m)]
+    std::uint64_t beside{};            ///< bits of the active nodes beside it, in the order of its ring, of which 64 count
     Real mass{};                       ///< [kg]
     Vec<D> momentum = Vec<D>::Zero();  ///< momentum less mass times velocity of the fit [kg m/s]
   };
-  /// Lists the hosts of each node of small mass, ascending, each with its mass times the number of ways to it in the place of its share.
-  void list_hosts(const Mesh<D>& mesh);
+  /// Lists the hosts of a node of small mass by the bits of its fit, ascending, each with its mass times the number of ways to it in the
+  /// place of its share.  On a rank that does not own the node, hosts of other ranks may be missing.
+  void list_hosts(const Mesh<D>& mesh, std::size_t place);
   /// The hosts of a node of small mass.
   std::span<Host> hosts_of(Index small_mass_node) noexcept;
   /// Finds the fit of a node of small mass to its hosts, before it sets their shares; level 0 if there are none.
@@ -90,7 +96,7 @@ class SmallMassNodes {
 
   std::vector<Index> small_;                            ///< ascending; own nodes, and those of other ranks that may have own hosts
   std::vector<Host> hosts_;                             ///< of all of them, each with its share
-  std::vector<std::size_t> begin_;                      ///< of the hosts of each, and the end
+  std::vector<HostRange> ranges_;                       ///< of the hosts of each
   SparseRows<std::size_t> place_;                       ///< by node: of those of small mass, in small_
   std::vector<Real> weight_;                            ///< by node: its mass if it is active, else 0 [kg]
   std::vector<std::uint8_t> is_small_;                  ///< by node
@@ -107,7 +113,7 @@ void SmallMassNodes<D>::for_each_host(Index node, F&& f) const
 {
   const auto n = static_cast<std::size_t>(node);
   if (is_small_[n] != 0)
-    for (std::size_t i = begin_[place_[n]]; i < begin_[place_[n] + 1]; ++i)
+    for (std::size_t i = ranges_[place_[n]].begin; i < ranges_[place_[n]].end; ++i)
       f(hosts_[i].node, hosts_[i].share);
 }
 

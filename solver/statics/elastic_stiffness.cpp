@@ -3,15 +3,14 @@
 #include <algorithm>
 
 #include "kernels/node_operators.hpp"
-
 #include "materials/interface/varied_law.hpp"
 
 namespace talus {
 
 /// Of the P-wave modulus: the shear modulus of a law that does not tell it, Poisson's ratio being 0.3, and that of a fluid, which has none.
 constexpr Real shear_of_unknown = 2.0 / 7, shear_of_fluid = 1e-3;
-/// Lame's first constant over the shear modulus from which on it counts by nodes where volumes are averaged: Poisson's ratio 0.4.  Below, cells
-/// do as well and couple fewer nodes; in 3-D those that would be coupled are too many (65 with each node).
+/// Lame's first constant over the shear modulus from which on it counts by nodes where volumes are averaged: Poisson's ratio 0.4.  Below,
+/// cells do as well and couple fewer nodes.  In 3-D too many are coupled: each with up to 369 by averaged gradients, in the plane with 61.
 constexpr Real least_ratio = 4;
 /// Of the largest stiffness of a node, that of nodes without a filled cell beside them.
 constexpr Real least_stiffness = 0.02;
@@ -59,7 +58,7 @@ Real ElasticStiffness<D>::dilatation_around(const Mesh<D>& mesh, Index v, std::v
   derivatives.clear();
   std::vector<std::pair<Index, Real>> shares;  // of the averages at nodes
   for (const Index c : mesh.cells_of_node()[v])
-    for (std::size_t a = 0; a <= D; ++a) {
+    for (std::size_t a = 0; a <= D && filled_[to_size(c)] > 0; ++a) {
       const Index n = mesh.cell(c)[a];
       const Real share = filled_[to_size(c)] / volume;
       if (gradients_.empty())

@@ -10,12 +10,13 @@
 
 namespace talus {
 
-/// In the plane, where a body averages its volume and hardly changes it, the part of Lame's first constant is that of the dilatation averaged
-/// around nodes, as in AveragedBodies: the energy of a displacement is sum_v Lambda_v theta_v^2 / 2, with Lambda_v = sum_c Lambda_c / (D + 1)
-/// over the cells c around the node v, Lambda_c their filled volume V_c times the constant, and
+/// In the plane, where a body averages its volume and hardly changes it, the part of Lame's first constant is that of the dilatation
+/// averaged around nodes, as in AveragedBodies: the energy of a displacement is sum_v Lambda_v theta_v^2 / 2, with
+/// Lambda_v = sum_c Lambda_c / (D + 1) over the cells c around the node v, Lambda_c their filled volume V_c times the constant, and
 ///     theta_v = sum_c V_c div_c / sum_c V_c                                     where gradients are those of cells,
 ///     theta_v = sum_c V_c mean_c / sum_c V_c,  mean_c = sum_u (1 + [u = v]) div_u / (D + 2),   where they are averages at the nodes u.
-/// The dilatation of single cells would lock: with Poisson's ratio 0.499 Cook's membrane takes six times the iterations.
+/// The sums are over the cells of this rank.  The dilatation of single cells would lock: with Poisson's ratio 0.499 Cook's membrane takes six
+/// times the iterations.
 template <int D>
 class ElasticStiffness {
  public:

@@ -26,7 +26,8 @@ Real mean_edge(const Mesh<D>& mesh, Index cell)
   return sum / (D * (D + 1) / 2);
 }
 
-/// From about this excess of the strength of cells on, shares of slopes that fail were found to depend on the cells, see benchmarks/random_slope.
+/// From about this excess of the strength of cells on, shares of slopes that fail were found to depend on the cells, see
+/// benchmarks/random_slope.
 constexpr Real largest_unevenness = 0.05;
 
 /// How uneven values are within cells: between places half an edge apart.

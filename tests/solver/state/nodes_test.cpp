@@ -93,7 +93,7 @@ TEST(SmallMassNodes, KeepALinearVelocityField)
 }
 
 /// Hosts on a line tell nothing of a slope across it, and a single one of no slope at all.
-TEST(SmallMassNodes, MoveWithTheMeanWhereHostsLieOnALine)
+TEST(SmallMassNodes, HaveNoSlopeAcrossHostsOnALine)
 {
   const Mesh<2> mesh(box<2>({0, 0}, {3, 3}, {3, 3}));
   for (const Real end : {2.5, 0.5}) {  // three hosts at y = 0 beside the node at (3, 1), or one
@@ -120,6 +120,32 @@ TEST(SmallMassNodes, MoveWithTheMeanWhereHostsLieOnALine)
     ExactSums<BoundaryWork> work;
     small_mass_nodes.extrapolate(all_nodes(mesh), Kick{}, none_at_all, nodes, work);
     EXPECT_LT((nodes.motion[static_cast<std::size_t>(outside)].v - Vec<2>(3, 1)).norm(), 1e-9) << "the slope along the line is known";
+  }
+}
+
+/// A heavy body beyond a gap of one row of nodes without mass is within two rings of the last node of a light one, and must not move it.
+TEST(SmallMassNodes, LeaveABodyAcrossAGapOut)
+{
+  const Mesh<2> mesh(box<2>({0, 0}, {6, 3}, {6, 3}));
+  Nodes<2> nodes = nodes_of(mesh);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    const Real x = mesh.node(n)[0];
+    NodeSum<2>& sum = nodes.sum[static_cast<std::size_t>(n)];
+    sum.mass = x < 1.5 ? 1 : x < 2.5 ? 1e-10 : x < 3.5 ? 0 : 1000;
+    sum.lightest = x < 2.5 ? 1 : 1000;
+    sum.momentum = sum.mass * Vec<2>(x < 2.5 ? 1 : -5, 0);
+    if (x > 2.5 && x < 3.5)
+      sum = {};
+  }
+  SmallMassNodes<2> small_mass_nodes;
+  small_mass_nodes.lump(mesh, all_nodes(mesh), nodes);
+  ASSERT_EQ(small_mass_nodes.size(), 4);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    small_mass_nodes.for_each_host(n, [&](Index host, Real) { EXPECT_LT(mesh.node(host)[0], 1.5); });
+    if (nodes.active[i] && mesh.node(n)[0] > 3.5) {
+      EXPECT_EQ(nodes.sum[i].mass, 1000);
+    }
   }
 }
 
