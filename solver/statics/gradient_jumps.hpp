@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "solver/strips/strip.hpp"
 
 namespace talus {
 
