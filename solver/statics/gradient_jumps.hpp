@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/particles.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/strips/strip.hpp"
 
