@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "solver/model/seepage.hpp"
+#include "solver/run_view.hpp"
 #include "tests/solver/flow/saturated_soil.hpp"
 
 namespace talus::pore_pressure_test {
