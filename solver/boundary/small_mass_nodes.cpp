@@ -37,29 +37,24 @@ void SmallMassNodes<D>::list_hosts(const Mesh<D>& mesh, std::size_t place)
   const auto& ring = mesh.ring_of_node();
   const std::uint64_t beside = fits_[static_cast<std::size_t>(node)].beside;
   const std::size_t begin = hosts_.size();
-  const auto first = static_cast<std::ptrdiff_t>(begin);
+  // place_ of an active node is 0, but here one more than its place among these hosts.
+  std::uint64_t bit = 1;
+  for (const Index between : ring[node]) {
+    if (beside == 0 || (beside & bit) != 0)
+      for (const Index n : ring[between])
+        if (std::size_t& at = place_[static_cast<std::size_t>(n)]; weight_[static_cast<std::size_t>(n)] > 0 && at == 0) {
+          hosts_.push_back({n, 0});
+          at = hosts_.size() - begin;
+        }
+    bit <<= 1;
+  }
   for (const Index between : ring[node])
     for (const Index n : ring[between])
-      if (const Real mass = weight_[static_cast<std::size_t>(n)]; mass > 0)
-        hosts_.push_back({n, mass});
-  std::ranges::sort(hosts_.begin() + first, hosts_.end(), {}, &Host::node);
-  std::size_t last = begin;
-  for (std::size_t i = begin + 1; i < hosts_.size(); ++i)
-    if (hosts_[i].node == hosts_[last].node)
-      hosts_[last].share += hosts_[i].share;
-    else
-      hosts_[++last] = hosts_[i];
-  hosts_.resize(std::min(hosts_.size(), last + 1));
-  const auto is_far = [&](const Host& host) {  // neither beside the node nor beside an active node that is
-    std::uint64_t bit = 1;
-    for (const Index near : ring[node]) {
-      if ((beside & bit) != 0 && std::ranges::binary_search(ring[host.node], near))
-        return false;
-      bit <<= 1;
-    }
-    return beside != 0;
-  };
-  hosts_.erase(std::remove_if(hosts_.begin() + first, hosts_.end(), is_far), hosts_.end());
+      if (const auto i = static_cast<std::size_t>(n); weight_[i] > 0 && place_[i] > 0)
+        hosts_[begin + place_[i] - 1].share += weight_[i];
+  for (std::size_t i = begin; i < hosts_.size(); ++i)
+    place_[static_cast<std::size_t>(hosts_[i].node)] = 0;
+  std::ranges::sort(hosts_.begin() + static_cast<std::ptrdiff_t>(begin), hosts_.end(), {}, &Host::node);
   ranges_[place] = {begin, hosts_.size()};
   place_[static_cast<std::size_t>(node)] = place;
 }
@@ -147,6 +142,8 @@ void SmallMassNodes<D>::exchange_neighbours(const Mesh<D>& mesh, const Nodes<D>&
 template <int D>
 void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, ActiveNodes which)
 {
+  for (const Index node : small_)
+    place_[static_cast<std::size_t>(node)] = 0;
   small_.reserve(nodes.sum.size());
   small_.clear();
   weight_.resize(nodes.sum.size());
