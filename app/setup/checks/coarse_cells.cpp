@@ -51,8 +51,8 @@ void warn_of_uneven_cells(const std::string& body, const VariedLaw& law, Real ed
       enough *= 0.99;
     warnings.push_back(fmt::format(
         "{}: {} varies within the cells of {:.3g} m of body \"{}\": their mean is about {:.0f} % above the geometric mean, which counts "
-        "along "
-        "a slip surface; if it is a strength, failure may be found too seldom (unsafe): take cells of at most {:.2g} m where it fails",
+        "along a slip surface; if it is a strength, failure may be found too seldom (unsafe): take cells of at most {:.2g} m where it "
+        "fails",
         to_string(one.where), one.parameter, edge, body, 100 * unevenness, enough));
   }
 }

@@ -65,21 +65,25 @@ TEST_F(CheckCells, WarnsOfABoundaryBetweenMaterialsThatCutsCells)
               HasSubstr("the boundary between their materials cuts cells, and is too strong by one to two cells"));
 }
 
+/// A body in cells of 0.25 m, of that material.
+std::string body_of(const std::string& material)
+{
+  return "title: Coarse cells\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [4, 3], cells: [16, 12]}}\nmaterials:\n" + material +
+         R"(bodies:
+  - {name: slope, material: clay, shape: {type: box, low: [0, 0], high: [4, 2]}}
+boundaries: [{type: fixed, on: y_min}]
+time: {end: 1}
+)";
+}
+
 TEST_F(CheckCells, WarnsOfCellsThatAreCoarserThanASofteningLength)
 {
   const auto scene = [](double length) {
-    return fmt::format(R"(title: Softening
-dimension: 2
-mesh: {{grid: {{low: [0, 0], high: [4, 3], cells: [16, 12]}}}}
-materials:
-  - {{name: clay, law: mohr_coulomb, density: 2000, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 0, cohesion: 1.0e4, residual_cohesion: 1.0e3,
+    return body_of(fmt::format(
+        R"(  - {{name: clay, law: mohr_coulomb, density: 2000, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 0, cohesion: 1.0e4, residual_cohesion: 1.0e3,
      softening_strain: 0.1, softening_length: {}}}
-bodies:
-  - {{name: slope, material: clay, shape: {{type: box, low: [0, 0], high: [4, 2]}}}}
-boundaries: [{{type: fixed, on: y_min}}]
-time: {{end: 1}}
 )",
-                       length);
+        length));
   };
   write("coarse.yaml", scene(0.2));
   write("fine.yaml", scene(0.3));
@@ -93,11 +97,7 @@ time: {{end: 1}}
 TEST_F(CheckCells, WarnsOfARandomFieldThatVariesWithinCells)
 {
   const auto scene = [](double length) {
-    return fmt::format(R"(title: Random strength
-dimension: 2
-mesh: {{grid: {{low: [0, 0], high: [4, 3], cells: [16, 12]}}}}
-materials:
-  - name: clay
+    return body_of(fmt::format(R"(  - name: clay
     law: von_mises
     density: 2000
     youngs_modulus: 1.0e6
@@ -105,12 +105,8 @@ materials:
     yield_stress: 1.0e4
     variation:
       - {{parameter: yield_stress, coefficient_of_variation: 1, correlation_length: [{}]}}
-bodies:
-  - {{name: slope, material: clay, shape: {{type: box, low: [0, 0], high: [4, 2]}}}}
-boundaries: [{{type: fixed, on: y_min}}]
-time: {{end: 1}}
 )",
-                       length);
+                               length));
   };
   write("uneven.yaml", scene(0.8));
   write("even.yaml", scene(2));
