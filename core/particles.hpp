@@ -43,6 +43,7 @@ struct Particles {
   ParticleColumn<Real> water;             ///< pressure of water that flows, of which `pore` is the part of `stress` [Pa]
   ParticleColumn<Vec<D>> water_gradient;  ///< its gradient, see PorePressure [Pa/m]
   ParticleColumn<Real> water_at_rest;     ///< what it would be below the water table of the scene, at rest [Pa]
+  ParticleColumn<Mat<D>> jump_stress;     ///< against displacements that averaged gradients do not see, see JumpForces [Pa]
   ParticleColumn<Real> side;              ///< of the nearest sheet, see SideOfSheet [-]
   ParticleColumn<Vec<D>> reference;       ///< position at which the kernel weighs, where that is not always x [m]
   ParticleColumn<Mat<D>> G;               ///< deformation gradient since the particle was there
@@ -74,6 +75,7 @@ struct Particles {
     f("volume_ratio", "-", self.volume_ratio), f("viscous_pressure", "Pa", self.viscous), f("pore_pressure", "Pa", self.pore);
     f("water_pressure", "Pa", self.water), f("water_gradient", "Pa/m", self.water_gradient);
     f("water_at_rest", "Pa", self.water_at_rest);
+    f("jump_stress", "Pa", self.jump_stress);
     f("side", "-", self.side), f("reference", "m", self.reference), f("since_reference", "-", self.G);
     f("domain", "m", self.domain);
   }

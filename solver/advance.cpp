@@ -10,6 +10,26 @@ namespace talus {
 
 namespace {
 
+/// Finds the forces of the stress against jumps of gradients, which stages without inertia leave, of the particles as the step before has
+/// left them.
+template <int D>
+void find_jump_forces(Model<D>& m)
+{
+  if (m.work.jump_stress)
+    m.work.jump_stress->find(m.problem.mesh, m.problem.subdomain, *m.work.strips);
+}
+template <int D>
+void add_jump_forces(Model<D>& m)
+{
+  if (!m.work.jump_stress)
+    return;
+  Nodes<D>& nodes = m.work.fields.front().nodes;
+  nodes.in_use.for_each([&](Index n) {
+    if (m.problem.own.has(n))
+      nodes.sum[to_size(n)].force += m.work.jump_stress->at(n);
+  });
+}
+
 /// Gives mass, momentum and force of nodes of small mass to their hosts.
 template <int D>
 void lump_small_masses(Model<D>& m)
@@ -140,6 +160,8 @@ void record_node_sums(Model<D>& m)
     add_work(problem.loads, time, state.stage.ramp(time), problem.own, nodes, work.sums.work_on_mesh);
     if (!problem.loads.on_surfaces.empty())
       add_ranges(blocks, work.sums.work_on_mesh, [&](Index n) { return surface_work(nodes, n); });
+    if (work.jump_stress)
+      add_ranges(blocks, work.sums.internal, [&](Index n) { return -work_over_step(nodes, n, work.jump_stress->at(n)); });
   }
   work.contact.add_sums(problem.mesh, work.fields, work.sums.contacts);
   work.cuts.add_sums(problem.mesh, problem.own, work.fields.front().nodes, std::span(work.sums.contacts).last(problem.cuts.size()));
@@ -170,6 +192,7 @@ void make_step(Model<D>& m, Real dt)
   StopWatch watch;
 
   work.sums.clear();
+  find_jump_forces(m);
   if (!locate_particles(m))  //  1
     return;
   work.strips->send_leavers(problem.subdomain, work.migration);
@@ -179,6 +202,7 @@ void make_step(Model<D>& m, Real dt)
   transfer.assemble_nodes(m);  //  4
   unite_sides_of_sheets(m);
   apply_nodal_loads(m);
+  add_jump_forces(m);
   lump_small_masses(m);  //  5
   transfer.add_affine_momentum(m, kick.from);
   tie_cuts(m, dt);

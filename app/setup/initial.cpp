@@ -204,6 +204,10 @@ bool carry_columns(const Scene& scene, const KeptBodies<D>& other, std::span<con
     p.volume_ratio.assign(n, 1);
     for_each_taken([&](const TakenParticles&, std::size_t row, std::size_t there) { p.volume_ratio.set(row, from.volume_ratio[there]); });
   }
+  if (!from.jump_stress.empty()) {
+    p.jump_stress.assign(n, Mat<D>::Zero());
+    for_each_taken([&](const TakenParticles&, std::size_t row, std::size_t there) { p.jump_stress.set(row, from.jump_stress[there]); });
+  }
   if (!from.viscous.empty()) {
     if (std::ranges::any_of(materials, [](const Material& one) { return one.viscosity.has_value(); }))
       p.viscous.assign(n, 0);

@@ -48,6 +48,8 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
     particles.water_gradient.assign(n, Vec<D>::Zero());
     particles.water_at_rest.assign(n, 0);
   }
+  if (wanted.jump_stress && particles.jump_stress.empty())
+    particles.jump_stress.assign(n, Mat<D>::Zero());
   if (wanted.side && particles.side.empty())
     particles.side.assign(n, 0);
   if (wanted.reference && particles.reference.empty()) {
@@ -128,6 +130,7 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
                      .viscous = any_material([](const Material& material) { return material.viscosity.has_value(); }),
                      .pore = problem.water.any(),
                      .flow = problem.flow.any(),
+                     .jump_stress = problem.equations != nullptr && transfer.averages_gradients(),
                      .side = problem.rigid.any_sheet(),
                      .reference = reference,
                      .domain = any_resampled(problem.resampling)};
@@ -244,6 +247,9 @@ void begin_sweeps(Model<D>& m)
   const bool keep = m.transfer->keeps_gradients() || m.problem.columns.reference || rigid_bodies_use_affine_fields(m);
   m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), keep, m.state.bodies, m.state.materials, m.state.particles, m.work.order);
   find_averaged_bodies(m);
+  const bool has_jump_stress = m.work.strips->layout().step_arrays().jump_stress != none && m.transfer->averages_gradients();
+  if (has_jump_stress && m.work.fields.size() == 1 && !m.work.jump_stress)
+    m.work.jump_stress.emplace(*m.problem.ranks, m.problem.subdomain, m.problem.mesh);
   m.work.due.assign(m.problem.columns.reference ? m.work.strips->keys() : 0, 0);
   m.transfer->sum_strips(m);
 }

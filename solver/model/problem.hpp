@@ -34,6 +34,7 @@ struct WantedColumns {
   bool viscous = false;       ///< a law has bulk viscosity
   bool pore = false;          ///< there is pore water
   bool flow = false;          ///< it flows
+  bool jump_stress = false;   ///< a stage without inertia, and a kernel that averages gradients
   bool side = false;          ///< there are sheets
   bool reference = false;     ///< a body has a reference configuration
   bool domain = false;        ///< particles of a body are split

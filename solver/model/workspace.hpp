@@ -19,6 +19,7 @@
 #include "solver/stress/average_strain.hpp"
 #include "solver/stress/average_volume.hpp"
 #include "solver/stress/conduct_heat.hpp"
+#include "solver/stress/jump_stress.hpp"
 #include "solver/strips/particle_strips.hpp"
 
 namespace talus {
@@ -49,6 +50,7 @@ struct Workspace {
   std::vector<AveragedBodies<D>> averaged;   ///< bodies that average their volumes, while particles are in strips
   std::vector<AveragedStrain<D>> softening;  ///< bodies whose softening has a length, while particles are in strips
   std::optional<HeatSums<D>> heat;           ///< used if a body conducts heat
+  std::optional<JumpStress<D>> jump_stress;  ///< used if particles have a stress against jumps of gradients, with one velocity field
 };
 
 }  // namespace talus

@@ -162,6 +162,7 @@ void unite_rows(const std::array<std::size_t, 2>& rows, Material& material, Part
        {&particles.volume_ratio, &particles.viscous, &particles.pore, &particles.water, &particles.water_at_rest})
     average_rows(*column, rows, by_volume);
   average_rows(particles.stress, rows, by_volume), average_rows(particles.water_gradient, rows, by_volume);
+  average_rows(particles.jump_stress, rows, by_volume);
   add_rows(particles.mass, rows), add_rows(particles.volume0, rows), add_rows(particles.volume, rows), add_rows(particles.applied, rows);
 
   const std::size_t p = rows[0];

@@ -93,12 +93,18 @@ Real remap_work(const Nodes<D>& nodes, Index n)
   return nodes.active[i] ? 0.5 * nodes.kick * nodes.sum[i].force.dot(nodes.remapped[i].change - nodes.remapped[i].v) : 0;
 }
 
-/// The work [J] of loads on surfaces at a node over a step: impulse times the mean of old and new velocity.
+/// The work [J] of a force [N] at a node over a step: impulse times the mean of old and new velocity.
+template <int D>
+Real work_over_step(const Nodes<D>& nodes, Index n, const Vec<D>& force) noexcept
+{
+  const auto i = static_cast<std::size_t>(n);
+  return nodes.kick * force.dot(nodes.motion[i].v - 0.5 * nodes.motion[i].change);
+}
+/// That of loads on surfaces.
 template <int D>
 Real surface_work(const Nodes<D>& nodes, Index n) noexcept
 {
-  const auto i = static_cast<std::size_t>(n);
-  return nodes.kick * nodes.surface_loads[i].dot(nodes.motion[i].v - 0.5 * nodes.motion[i].change);
+  return work_over_step<D>(nodes, n, nodes.surface_loads[static_cast<std::size_t>(n)]);
 }
 
 /// Adds the energies at one node.  In stages that seek equilibrium the net force is the one in `felt`.

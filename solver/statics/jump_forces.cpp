@@ -5,19 +5,23 @@
 
 namespace talus {
 
-/// Of the shear stiffness, that of displacements that averaged gradients do not see.  With less they alternate, with more it carries a part
-/// of a limit load (docs/theory/statics.md, benchmarks/equilibrium).
+/// Of the shear stiffness, that against jumps (docs/theory/statics.md, benchmarks/equilibrium).
 constexpr Real stiffness_of_jumps = 0.1;
-/// Of this, what it has at least where the material yields.
-constexpr Real least_left = 0.25;
+
+namespace {
+
+Real size_of_deviator(const Mat3& of) { return (of - of.trace() / 3 * Mat3::Identity()).norm(); }
+
+}  // namespace
 
 template <int D>
-void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic)
+void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic, const Particles<D>& particles)
 {
+  const Mesh<D>& mesh = problem.mesh;
   shear_ = elastic.shear();
   std::vector<Real> filled = elastic.filled(), shear = shear_;
   if (!problem.subdomain.alone()) {
-    cells_ = copies_of_cells(*problem.ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
+    cells_ = copies_of_cells(*problem.ranks, problem.subdomain, MessageTag::cells, mesh.n_cells());
     for (std::vector<Real>* const values : {&filled, &shear}) {
       cells_.send(*values, Numbers{});
       cells_.take(*values, Numbers{});
@@ -25,66 +29,79 @@ void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffn
   }
   for (Real& one : shear)
     one *= stiffness_of_jumps;
-  jumps_ = GradientJumps<D>(problem.mesh, filled, shear);
+  jumps_ = GradientJumps<D>(mesh, filled, shear);
+  seen_.assign(to_size(mesh.n_cells()), {});
+  for (std::size_t p = 0; p < particles.id.size(); ++p) {
+    const Index c = particles.cell[p];
+    const auto N = mesh.barycentric(c, particles.x[p]);
+    for (std::size_t a = 0; a <= D; ++a)
+      seen_[to_size(c)][a] += particles.volume[p] / filled[to_size(c)] * N[a];
+  }
 }
 
-/// Adds volume times stress of particles, by the cells in which a trial finds them.
+/// The share rho of q that is left in a cell.
 template <int D>
-void JumpForces<D>::add_stress(const ParticleStrips<D>& strips, std::vector<Sym3>& of_cell) const
+Real JumpForces<D>::left_in(const Mesh<D>& mesh, Index c) const
 {
-  for (std::size_t key = 0; key < strips.keys(); ++key)
-    for (std::size_t s = 0; s < strips.strips(key).size(); ++s) {
-      const Strip& strip = strips.strips(key)[s];
-      const StripColumns<D> columns = strips.columns(strip);
-      std::size_t i = 0;
-      for (Index k = 0; k < strip_cells; ++k)
-        for (Index left = strip.count[to_size(k)]; left > 0; --left, ++i)
-          of_cell[to_size(strips.first_cell(key, static_cast<Index>(s)) + k)] += columns.volume.of(i) * columns.stress.of(i);
-    }
+  const auto i = to_size(c);
+  if (!(before_.volume[i] > 0) || !(shear_[i] > 0))
+    return 1;
+  Mat3 gradient = Mat3::Zero();
+  for (std::size_t a = 0; a <= D; ++a)
+    gradient.template topLeftCorner<D, D>() += seen_[i][a] * jumps_.mean(mesh.cell(c)[a]);
+  const Mat3 before = unpack(before_.stress[i] / before_.volume[i]), now = unpack(now_.stress[i] / now_.volume[i]);
+  const Mat3 change = shear_[i] / before_.volume[i] * (gradient + gradient.transpose());
+  const Real found = size_of_deviator(now), elastic = size_of_deviator(before + change);
+  return found < elastic ? found / elastic : 1;
 }
 
 template <int D>
-void JumpForces<D>::begin(const Mesh<D>& mesh, const ParticleStrips<D>& strips)
+void JumpForces<D>::take_stress(const Mesh<D>& mesh, const ParticleStrips<D>& strips)
 {
-  stress_.assign(to_size(mesh.n_cells()), Sym3::Zero());
-  add_stress(strips, stress_);
+  now_ = JumpSums<D>(mesh, strips);
+  left_.assign(now_.volume.size(), 1);
+  turned_.assign(left_.size(), Mat<D>::Identity());
+  of_jump_.assign(left_.size(), Mat<D>::Zero());
+  for (const auto& one : jumps_.cells()) {
+    const auto c = to_size(one.cell);
+    left_[c] = left_in(mesh, one.cell);
+    turned_[c] += (one.gradient - one.gradient.transpose()) / 2;
+    of_jump_[c] = one.modulus * one.jump;
+  }
 }
 
 template <int D>
-void JumpForces<D>::take(const Mesh<D>& mesh, const std::vector<Vec<D>>& u)
+void JumpForces<D>::store(ParticleStrips<D>& strips) const
 {
-  jumps_.find_gradients(mesh, u);
+  for_each_in_cells(strips, [&](Index cell, const StripColumns<D>& columns, std::size_t p) {
+    if (const std::size_t c = to_size(cell); columns.jump_stress)
+      columns.jump_stress.set(p, left_[c] * (turned_[c] * columns.jump_stress.of(p) * turned_[c].transpose() + of_jump_[c]));
+  });
 }
 
 template <int D>
-void JumpForces<D>::find(const Problem<D>& problem, const ParticleStrips<D>& strips)
+std::vector<Vec<D>> JumpForces<D>::find(const Problem<D>& problem, std::initializer_list<Part> parts)
 {
   const Mesh<D>& mesh = problem.mesh;
-  std::vector<Sym3> stress(to_size(mesh.n_cells()), Sym3::Zero());
-  add_stress(strips, stress);
-  const auto size_of_deviator = [](Sym3 of) {
-    of.template head<3>().array() -= of.template head<3>().sum() / 3;
-    return std::sqrt(of.template head<3>().squaredNorm() + 2 * of.template tail<3>().squaredNorm());
-  };
-  left_.assign(stress.size(), 1);
-  for (Index c = 0; c < mesh.n_cells(); ++c) {
-    const Real shear = shear_[to_size(c)];
-    if (!(shear > 0))
-      continue;
-    Mat3 gradient = Mat3::Zero();
-    gradient.template topLeftCorner<D, D>() = jumps_.seen_in(mesh, c);
-    const Mat3 strain = (gradient + gradient.transpose()) / 2;
-    const Real elastic = 2 * shear * (strain - strain.trace() / 3 * Mat3::Identity()).norm();
-    const Real found = size_of_deviator(stress[to_size(c)] - stress_[to_size(c)]);
-    if (2 * found < elastic)  // means over cells differ, also where it is elastic
-      left_[to_size(c)] = std::max(2 * found / elastic, least_left);
-  }
+  std::vector<Mat<D>> stress(to_size(mesh.n_cells()), Mat<D>::Zero());
+  for (const Part part : parts)
+    for (const auto& one : jumps_.cells()) {
+      const auto c = to_size(one.cell);
+      if (part == Part::start)
+        stress[c] += before_.in_cell(mesh, one.cell, before_.jump_stress[c]);
+      else if (part == Part::empty_cells && now_.volume[c] == 0)
+        stress[c] += share_of_empty * mesh.volume(one.cell) * of_jump_[c];
+      else if (part == Part::particles && now_.volume[c] > 0)
+        stress[c] += now_.in_cell(
+            mesh, one.cell, Mat<D>(left_[c] * (turned_[c] * now_.jump_stress[c] * turned_[c].transpose() + now_.volume[c] * of_jump_[c])));
+    }
   if (!problem.subdomain.alone()) {
-    cells_.send(left_, Numbers{});
-    cells_.take(left_, Numbers{});
+    cells_.send(stress, Numbers{});
+    cells_.take(stress, Numbers{});
   }
-  force_.assign(to_size(mesh.n_nodes()), Vec<D>::Zero());
-  jumps_.add_forces(mesh, left_, force_);
+  std::vector<Vec<D>> force(to_size(mesh.n_nodes()), Vec<D>::Zero());
+  jumps_.add_forces(mesh, stress, force);
+  return force;
 }
 
 template class JumpForces<2>;

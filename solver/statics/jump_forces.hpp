@@ -1,48 +1,57 @@
 #pragma once
-// Forces of displacements that averaged gradients do not see, in the trials of an increment.
+// Forces against displacements that averaged gradients do not see, in the trials of an increment.
 #include <vector>
 
 #include "solver/halo/halo_exchange.hpp"
 #include "solver/model/problem.hpp"
 #include "solver/statics/elastic_stiffness.hpp"
-#include "solver/statics/gradient_jumps.hpp"
-#include "solver/strips/particle_strips.hpp"
+#include "solver/stress/jump_stress.hpp"
 
 namespace talus {
 
-/// Their stiffness is a share of that which the material has left in a trial, |change of the deviatoric stress| / (2 mu |deviatoric strain|):
-/// what yields is not held by it.
+/// Particles have a stress q [Pa] that acts on the jumps J_c of their cell, see GradientJumps.  In an increment with the displacements u
+///
+///     q <- rho ( R q R^T + k mu J_c(u) ),     rho = min(1, |s| / |s_0 + 2 mu e|),
+///
+/// with the shear modulus mu, the rotation R = 1 + skew(grad u), the deviatoric stress s of the particles of the cell at the end, s_0 at the
+/// beginning, and the deviatoric strain e of the increment.  So it is elastic where the material is, and where this yields it relaxes as the
+/// deviatoric stress does.  Empty cells beside the surface have a stiffness within the increment, which supports nodes beyond the surface.
 template <int D>
 class JumpForces {
  public:
-  /// Takes filled cells and their stiffness.  Collective.
-  void set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic);
+  /// Takes filled cells and their stiffness, of the particles in the columns, and the sums of take_start().  Collective.
+  void set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic, const Particles<D>& particles);
 
-  /// As GradientJumps<D>::for_each_cell().
+  /// Calls f(cell, volume times stiffness [N m]) for the cells that have one, all as if they were full.
   template <class F>
-  void for_each_cell(F&& f) const
+  void for_each_cell(const Mesh<D>& mesh, F&& f) const
   {
-    jumps_.for_each_cell(f);
+    for (const auto& one : jumps_.cells())
+      f(one.cell, mesh.volume(one.cell) * one.modulus);
   }
   /// Takes the stress of the particles in strips as that with which the increment begins.
-  void begin(const Mesh<D>& mesh, const ParticleStrips<D>& strips);
+  void take_start(const Mesh<D>& mesh, const ParticleStrips<D>& strips) { before_ = JumpSums<D>(mesh, strips); }
   /// Takes the displacements of all nodes [m].
-  void take(const Mesh<D>& mesh, const std::vector<Vec<D>>& u);
-  /// Finds the forces at the nodes [N] for the stress that the particles in strips have by these displacements.  Collective.
-  void find(const Problem<D>& problem, const ParticleStrips<D>& strips);
+  void take_displacements(const Mesh<D>& mesh, const std::vector<Vec<D>>& u) { jumps_.find(mesh, u); }
+  /// Takes the stress that the particles in strips have by these displacements, still in the cells in which they were at the beginning.
+  void take_stress(const Mesh<D>& mesh, const ParticleStrips<D>& strips);
+  /// Gives the particles, in the cells in which they were at the beginning, the stress q at the end.
+  void store(ParticleStrips<D>& strips) const;
 
-  std::vector<Vec<D>>& of_nodes() noexcept { return force_; }
-  const Vec<D>& at(Index n) const noexcept { return force_[to_size(n)]; }
+  /// Forces at all nodes [N].  Collective.
+  enum class Part : std::uint8_t { start, particles, empty_cells };  ///< of q at the beginning; of q at the end; of cells without particles
+  std::vector<Vec<D>> find(const Problem<D>& problem, std::initializer_list<Part> parts);
 
  private:
-  void add_stress(const ParticleStrips<D>& strips, std::vector<Sym3>& of_cell) const;
+  Real left_in(const Mesh<D>& mesh, Index c) const;
 
   GradientJumps<D> jumps_;
-  std::vector<Vec<D>> force_;  ///< by node
-  // By cell, of its particles on this rank: sums of volume times shear modulus and, at the beginning, times stress [N m]; and which share of
-  // their shear stiffness is left in the last trial.
-  std::vector<Real> shear_, left_;
-  std::vector<Sym3> stress_;
+  std::vector<std::array<Real, D + 1>> seen_;  ///< by cell: mean shape functions of its particles
+  std::vector<Real> shear_;                    ///< by cell: volume times shear modulus of its particles at the beginning [N m]
+  JumpSums<D> before_, now_;
+  std::vector<Real> left_;       ///< by cell: rho
+  std::vector<Mat<D>> turned_;   ///< by cell: R
+  std::vector<Mat<D>> of_jump_;  ///< by cell: k mu J [Pa]
   HaloExchange cells_;
 };
 

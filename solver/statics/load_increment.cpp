@@ -59,21 +59,22 @@ void LoadIncrement<D>::set_stiffness()
 {
   const Problem<D>& problem = m_.problem;
   elastic_ = ElasticStiffness<D>(problem.mesh, m_.state, m_.transfer->averages_gradients());
-  jumps_.set_stiffness(problem, elastic_);
-  jumps_.for_each_cell([&](Index c, Real stiffness) {
+  jumps_.set_stiffness(problem, elastic_, m_.state.particles);
+  jumps_.for_each_cell(problem.mesh, [&](Index c, Real stiffness) {
     if (problem.subdomain.alone() || problem.subdomain.owns_cell(c))
       elastic_.support(c, stiffness);
   });
   stiffness_ = elastic_.of_nodes(problem, unknowns_);
 }
 
-/// The forces of the displacements that averaged gradients do not see, at nodes with a motion of their own.
+/// Forces against displacements that averaged gradients do not see, at nodes with a motion of their own [N].
 template <int D>
-void LoadIncrement<D>::find_jump_forces()
+std::vector<Vec<D>> LoadIncrement<D>::jump_forces(std::initializer_list<JumpPart> parts)
 {
-  jumps_.find(m_.problem, *m_.work.strips);
+  std::vector<Vec<D>> forces = jumps_.find(m_.problem, parts);
   m_.work.fields.front().small_mass_nodes.give(
-      m_.problem.own, [](Index, const Vec<D>& force) { return force; }, jumps_.of_nodes());
+      m_.problem.own, [](Index, const Vec<D>& force) { return force; }, forces);
+  return forces;
 }
 
 /// Which changes of displacement the conditions leave free, as they were in the last trial.
@@ -153,18 +154,22 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   if (then == Then::stay)
     record_work(x);
   else if (then == Then::forces)
-    jumps_.take(m_.problem.mesh, displacements());
+    jumps_.take_displacements(m_.problem.mesh, displacements());
   m_.transfer->send_motion(m_);
   clear_particle_sums(m_);
   find_renewed_bodies(m_);
   m_.transfer->nodes_to_particles(m_, kick, dt_, between_parts(m_, dt_));
+  if (then == Then::locate)
+    jumps_.take_start(m_.problem.mesh, *work.strips);
+  else if (then == Then::forces)
+    jumps_.take_stress(m_.problem.mesh, *work.strips);
+  else
+    jumps_.store(*work.strips);
   m_.state.boundary = before_.boundary;  // without the impulses of masses, which have no inertia here
   work.sums.beyond_nodes.clear();
   work.errors.take(m_.problem.ranks->min(work.errors.word()));
-  if (then == Then::locate) {
+  if (then == Then::locate)
     work.errors.clear();
-    jumps_.begin(m_.problem.mesh, *m_.work.strips);
-  }
   if (then != Then::forces)
     return true;
   if (work.errors.worst())
@@ -173,7 +178,7 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   work.sums.on_mesh.clear();
   if (!find_forces(ActiveNodes::as_before))
     return give_up();
-  find_jump_forces();
+  jump_ = jump_forces({JumpPart::particles, JumpPart::empty_cells});
   return true;
 }
 
@@ -192,7 +197,7 @@ bool LoadIncrement<D>::find_residual(std::span<const Real> x, std::span<Real> f)
     const Index n = unknowns_.node[k];
     const NodeSum<D>& sum = nodes().sum[to_size(n)];
     weight_[k] = sum.mass * gravity;
-    const Vec<D> u = displacement(x, k), r = sum.force + weight_[k] + jumps_.at(n);
+    const Vec<D> u = displacement(x, k), r = sum.force + weight_[k] + jump_[to_size(n)];
     const Real s = stiffness_[k].all;
     NodeMotion<D>& motion = nodes().motion[to_size(n)];
     motion.change = r / (s * dt_);

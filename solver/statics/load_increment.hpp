@@ -39,12 +39,15 @@ class LoadIncrement {
   bool find_forces(ActiveNodes active);
   void set_stiffness();
   std::vector<Vec<D>> displacements();
-  void find_jump_forces();
+  using JumpPart = typename JumpForces<D>::Part;
+  std::vector<Vec<D>> jump_forces(std::initializer_list<JumpPart> parts);
   void set_constraints();
   void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
   bool move(std::span<const Real> x, Then then);
   bool find_residual(std::span<const Real> x, std::span<Real> f);
   void accept(std::span<const Real> x);
+  /// Of the forces of jumps in the last trial those that no particle keeps.
+  Vec<D> passing_jump(Index n) const noexcept { return jump_[to_size(n)] - jump_after_[to_size(n)]; }
   Vec<D> left_over(std::span<const Real> f, std::size_t k) const;
   void find_net_acceleration(std::span<const Real> f);
   void record_work(std::span<const Real> x);
@@ -69,6 +72,9 @@ class LoadIncrement {
   ElasticStiffness<D> elastic_;
   std::vector<typename ElasticStiffness<D>::OfNode> stiffness_;  ///< of each node with unknowns, s above
   JumpForces<D> jumps_;
+  std::vector<Vec<D>> jump_;  ///< by node: their forces in the last trial [N]
+  // The same at the beginning and at the end, as steps have them: of the stress that particles have.
+  std::vector<Vec<D>> jump_before_, jump_after_;
   Real force_ = 1;  ///< unit of residuals [N]
   // Of each node with unknowns.
   std::vector<Mat<D>> free_;               ///< changes of displacement that its conditions leave free

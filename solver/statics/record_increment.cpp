@@ -6,11 +6,12 @@
 
 namespace talus {
 
-/// What is out of balance at a node in the last trial without the forces of jumps, of which a boundary takes up a part by its reaction [N].
+/// What is out of balance at a node in the last trial without the forces of jumps that no particle keeps, of which a boundary takes up a part
+/// by its reaction [N].
 template <int D>
 Vec<D> LoadIncrement<D>::left_over(std::span<const Real> f, std::size_t k) const
 {
-  return -force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) - free_[k] * jumps_.at(unknowns_.node[k]);
+  return -force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) - free_[k] * passing_jump(unknowns_.node[k]);
 }
 
 /// Half of the work of loads, gravity and boundaries at the displacements, with forces as they are before these.  What is out of balance before
@@ -27,9 +28,10 @@ void LoadIncrement<D>::record_work(std::span<const Real> x)
     NodeWork<D> of_node;
     const Vec<D> weight = nodes().sum[n].mass * gravity, u = displacement(x, k);
     of_node.gravity = weight.dot(u) / 2;
-    const Vec<D> out_of_balance = nodes().sum[n].force + weight, free = free_[k] * out_of_balance;
+    const Vec<D> out_of_balance = nodes().sum[n].force + weight + jump_before_[n], free = free_[k] * out_of_balance;
     of_node.damping = -free.dot(u) / 2;
     m_.work.sums.nodes.add(of_node);
+    m_.work.sums.internal.add(-(jump_before_[n] + jump_after_[n]).dot(u) / 2);
     m_.work.sums.at_nodes.add({.moved = (free - out_of_balance).dot(u) / 2});
     if (!m_.problem.loads.on_surfaces.empty())
       m_.work.sums.work_on_mesh.add(surface_work(nodes(), unknowns_.node[k]));
@@ -53,7 +55,8 @@ void LoadIncrement<D>::record_particle_loads()
   }
 }
 
-/// The accelerations that the forces of the last trial would give, without those that move no particle and without the forces of jumps.
+/// The accelerations that the forces of the last trial would give, without those that move no particle and without forces of jumps that no particle
+/// keeps.
 template <int D>
 void LoadIncrement<D>::find_net_acceleration(std::span<const Real> f)
 {
@@ -75,6 +78,11 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
   std::vector<Real> f(x.size());
   force_ = 1;
   find_residual(x, f);
+  const bool keeps = m_.problem.columns.jump_stress;
+  if (keeps)
+    jump_before_ = jump_forces({JumpPart::start}), jump_after_ = jump_forces({JumpPart::particles});
+  else
+    jump_before_ = jump_after_ = std::vector<Vec<D>>(jump_.size(), Vec<D>::Zero());
   const std::vector<Mat<D>> free_before = free_;
   set_constraints();
   StepSums<D>& sums = m_.work.sums;
@@ -94,7 +102,7 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
     NodeWork<D> of_node;
     of_node.gravity = sum.mass * gravity.dot(displacement(x, k)) / 2;
     of_node.damping = -left_over(f, k).dot(displacement(x, k)) / 2;
-    const Vec<D> held = force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) + jumps_.at(unknowns_.node[k]);
+    const Vec<D> held = force_ * Eigen::Map<const Vec<D>>(f.data() + k * D) + passing_jump(unknowns_.node[k]);
     of_node.damped = ForceAndMoment<D>::at(m_.problem.mesh.node(unknowns_.node[k]), dt_ * held);
     of_node.mass = sum.mass;
     of_node.first_moment = sum.mass * m_.problem.mesh.node(unknowns_.node[k]);

@@ -47,6 +47,7 @@ StripColumns<D> ParticleStrips<D>::columns(const Strip& strip) const noexcept
   find(at.mass, all.mass), find(at.volume0, all.volume0), find(at.volume, all.volume);
   find(at.viscous, all.viscous), find(at.pore, all.pore), find(at.side, all.side);
   find(at.water, all.water), find(at.water_gradient, all.water_gradient), find(at.water_at_rest, all.water_at_rest);
+  find(at.jump_stress, all.jump_stress);
   find(at.reference, all.reference), find(at.since_reference, all.G), find(at.domain, all.domain);
   find(at.applied, all.applied), find(at.volume_ratio, all.volume_ratio), find(at.averaged, all.averaged);
   all.id = {strip.array(at.id)};

@@ -26,7 +26,7 @@ inline constexpr Index strip_padding = pack_size;
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
   Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore, water, water_gradient,
-      water_at_rest, side, reference, since_reference, domain;
+      water_at_rest, jump_stress, side, reference, since_reference, domain;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place.
@@ -71,6 +71,7 @@ class StripLayout {
                .water = at("water_pressure"),
                .water_gradient = at("water_gradient"),
                .water_at_rest = at("water_at_rest"),
+               .jump_stress = at("jump_stress"),
                .side = at("side"),
                .reference = at("reference"),
                .since_reference = at("since_reference"),
@@ -167,6 +168,7 @@ struct StripColumns {
   StripColumn<Sym3> stress{};
   StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{}, water{}, water_at_rest{}, side{};
   StripColumn<Vec<D>> water_gradient{};          ///< of the pressure of water that flows [Pa/m]
+  StripColumn<Mat<D>> jump_stress{};             ///< see JumpForces [Pa]
   StripColumn<Vec<D>> applied{};                 ///< forces of loads at the present positions [N]
   StripColumn<Real> volume_ratio{}, averaged{};  ///< of averaged volumes: see StressStrip; `averaged` lasts for a step
   StripColumn<Vec<D>> reference{};               ///< where there are reference configurations, see reference.hpp [m]
