@@ -18,6 +18,8 @@ void find_jump_forces(Model<D>& m)
   if (m.work.jump_stress)
     m.work.jump_stress->find(m.problem.mesh, m.problem.subdomain, *m.work.strips);
 }
+
+/// Adds them to those of the own nodes.
 template <int D>
 void add_jump_forces(Model<D>& m)
 {
@@ -26,7 +28,26 @@ void add_jump_forces(Model<D>& m)
   Nodes<D>& nodes = m.work.fields.front().nodes;
   nodes.in_use.for_each([&](Index n) {
     if (m.problem.own.has(n))
-      nodes.sum[to_size(n)].force += m.work.jump_stress->at(n);
+      nodes.sum[to_size(n)].force += m.work.jump_stress->forces()[to_size(n)];
+  });
+}
+
+/// Counts their work as that of stress: by remapped velocities, where strains follow from these.  The remap knows the forces at nodes with a
+/// motion of their own.
+template <int D>
+void record_jump_work(Model<D>& m)
+{
+  if (!m.work.jump_stress)
+    return;
+  VelocityField<D>& field = m.work.fields.front();
+  const Nodes<D>& nodes = field.nodes;
+  const std::vector<Vec<D>>& forces = m.work.jump_stress->forces();
+  std::vector<Vec<D>> given = forces;
+  field.small_mass_nodes.give(
+      m.problem.own, [](Index, const Vec<D>& force) { return force; }, given);
+  const bool is_remapped = m.problem.transfer.uses_musl();
+  add_ranges(nodes.in_use.own(), m.work.sums.stress_at_nodes, [&](Index n) {
+    return work_over_step(nodes, n, forces[to_size(n)]) - (is_remapped ? remap_work(nodes, n, given[to_size(n)]) : 0);
   });
 }
 
@@ -132,7 +153,7 @@ void find_pore_pressures(Model<D>& m, const Kick& kick, Real dt)
                          .weight = weight_of_water(m.problem, state.stage, end),
                          .forces = forces_on_water(m.problem, state.stage, end)};
   const FlowModel<D> model{m.problem.mesh, m.problem.flow, m.problem.own, *m.problem.ranks, state.boundary, m.work.fields.front()};
-  m.work.flow->advance(model, state.materials, *m.work.strips, step, state.flow, m.work.sums.pore);
+  m.work.flow->advance(model, state.materials, *m.work.strips, step, state.flow, m.work.sums.stress_at_nodes);
 }
 
 /// Tells particles and other ranks how nodes move.
@@ -160,8 +181,6 @@ void record_node_sums(Model<D>& m)
     add_work(problem.loads, time, state.stage.ramp(time), problem.own, nodes, work.sums.work_on_mesh);
     if (!problem.loads.on_surfaces.empty())
       add_ranges(blocks, work.sums.work_on_mesh, [&](Index n) { return surface_work(nodes, n); });
-    if (work.jump_stress)
-      add_ranges(blocks, work.sums.internal, [&](Index n) { return -work_over_step(nodes, n, work.jump_stress->at(n)); });
   }
   work.contact.add_sums(problem.mesh, work.fields, work.sums.contacts);
   work.cuts.add_sums(problem.mesh, problem.own, work.fields.front().nodes, std::span(work.sums.contacts).last(problem.cuts.size()));
@@ -219,6 +238,7 @@ void make_step(Model<D>& m, Real dt)
   clear_particle_sums(m);
   find_renewed_bodies(m);
   transfer.nodes_to_particles(m, kick, dt, between_parts(m, dt));  //  9 to 12, and 2 and 3 of the next step
+  record_jump_work(m);
   record_particle_sums(m);
   move(problem.rigid, dt, state.rigid);
   update_balances(m);

@@ -206,7 +206,10 @@ bool carry_columns(const Scene& scene, const KeptBodies<D>& other, std::span<con
   }
   if (!from.jump_stress.empty()) {
     p.jump_stress.assign(n, Mat<D>::Zero());
-    for_each_taken([&](const TakenParticles&, std::size_t row, std::size_t there) { p.jump_stress.set(row, from.jump_stress[there]); });
+    for_each_taken([&](const TakenParticles& taken, std::size_t row, std::size_t there) {
+      if (taken.law == materials[taken.body].law().name())
+        p.jump_stress.set(row, from.jump_stress[there]);
+    });
   }
   if (!from.viscous.empty()) {
     if (std::ranges::any_of(materials, [](const Material& one) { return one.viscosity.has_value(); }))

@@ -74,6 +74,9 @@ void renew(const std::vector<Renewal>& bodies, std::span<const Material> laws, S
     if (!same_law || !varies_alike(before.law(), material.law()))
       for (const ParameterTrouble& one : set_parameters_in_space(particles, ranks, material))
         throw RunError(fmt::format("body \"{}\" cannot become {}: {}: {}", body.name, material.name, to_string(one.where), one.message));
+    if (!same_law && !particles.jump_stress.empty())
+      for (Index p = body.begin; p < body.end; ++p)
+        particles.jump_stress.set(static_cast<std::size_t>(p), Mat<D>::Zero());
     if (before.viscosity && !material.viscosity)
       drop_viscosity(body, particles);
     if (const Real heavier = material.law().density() / before.law().density(); heavier != 1) {

@@ -110,6 +110,13 @@ void bind_boundary_conditions(Model<D>& m)
     problem.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
 }
 
+/// Whether a stress against jumps of gradients has a meaning: jumps are those of one velocity field, and of averages.
+template <int D>
+bool may_have_jump_stress(const Model<D>& m)
+{
+  return m.transfer->averages_gradients() && m.problem.n_fields() == 1;
+}
+
 template <int D>
 void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
 {
@@ -130,10 +137,12 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
                      .viscous = any_material([](const Material& material) { return material.viscosity.has_value(); }),
                      .pore = problem.water.any(),
                      .flow = problem.flow.any(),
-                     .jump_stress = problem.equations != nullptr && transfer.averages_gradients(),
+                     .jump_stress = problem.equations != nullptr && may_have_jump_stress(m),
                      .side = problem.rigid.any_sheet(),
                      .reference = reference,
                      .domain = any_resampled(problem.resampling)};
+  if (!may_have_jump_stress(m))
+    state.particles.jump_stress = {};
   fill_columns(problem.columns, state.particles);
   const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))
@@ -247,8 +256,7 @@ void begin_sweeps(Model<D>& m)
   const bool keep = m.transfer->keeps_gradients() || m.problem.columns.reference || rigid_bodies_use_affine_fields(m);
   m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), keep, m.state.bodies, m.state.materials, m.state.particles, m.work.order);
   find_averaged_bodies(m);
-  const bool has_jump_stress = m.work.strips->layout().step_arrays().jump_stress != none && m.transfer->averages_gradients();
-  if (has_jump_stress && m.work.fields.size() == 1 && !m.work.jump_stress)
+  if (m.work.strips->layout().step_arrays().jump_stress != none && may_have_jump_stress(m) && !m.work.jump_stress)
     m.work.jump_stress.emplace(*m.problem.ranks, m.problem.subdomain, m.problem.mesh);
   m.work.due.assign(m.problem.columns.reference ? m.work.strips->keys() : 0, 0);
   m.transfer->sum_strips(m);

@@ -87,10 +87,10 @@ NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, 
 /// bodies strain by remapped velocities, which are the old ones of the next step; so half of the work of forces in the removed part
 /// corresponds to no strain.
 template <int D>
-Real remap_work(const Nodes<D>& nodes, Index n)
+Real remap_work(const Nodes<D>& nodes, Index n, const Vec<D>& force)
 {
   const auto i = static_cast<std::size_t>(n);
-  return nodes.active[i] ? 0.5 * nodes.kick * nodes.sum[i].force.dot(nodes.remapped[i].change - nodes.remapped[i].v) : 0;
+  return nodes.active[i] ? 0.5 * nodes.kick * force.dot(nodes.remapped[i].change - nodes.remapped[i].v) : 0;
 }
 
 /// The work [J] of a force [N] at a node over a step: impulse times the mean of old and new velocity.
@@ -100,6 +100,7 @@ Real work_over_step(const Nodes<D>& nodes, Index n, const Vec<D>& force) noexcep
   const auto i = static_cast<std::size_t>(n);
   return nodes.kick * force.dot(nodes.motion[i].v - 0.5 * nodes.motion[i].change);
 }
+
 /// That of loads on surfaces.
 template <int D>
 Real surface_work(const Nodes<D>& nodes, Index n) noexcept

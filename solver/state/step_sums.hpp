@@ -60,11 +60,11 @@ struct StepSums {
   ExactSums<NodeWork<D>> nodes;
   ExactSums<Balance> balance;
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]
-  ExactSums<Real> pore;                                       ///< work of the change of pore pressure on nodes [J]
-  ExactSums<Real> remap;                                      ///< see EnergyLedger [J]
-  ExactSums<Real> particles;                                  ///< number of particles
-  std::vector<ExactSums<ContactSums<D>>> contacts;            ///< by law of contact, then by cut
-  std::vector<ExactSums<RigidSums<D>>> rigid;                 ///< by rigid body
+  ExactSums<Real> stress_at_nodes;                  ///< work on nodes of a change of pore pressure, of the stress against jumps [J]
+  ExactSums<Real> remap;                            ///< see EnergyLedger [J]
+  ExactSums<Real> particles;                        ///< number of particles
+  std::vector<ExactSums<ContactSums<D>>> contacts;  ///< by law of contact, then by cut
+  std::vector<ExactSums<RigidSums<D>>> rigid;       ///< by rigid body
   /// Digits in use of these sums and of the impulses of boundary conditions, kept from step to step.
   Digits digits;
   void clear() noexcept
@@ -72,7 +72,7 @@ struct StepSums {
     largest_set_back = 0;
     removed.clear(), on_particles.clear(), on_mesh.clear(), at_nodes.clear(), beyond_nodes.clear();
     nodes.clear(), balance.clear(), work_on_mesh.clear(), work_on_particles.clear(), internal.clear(), remap.clear();
-    pore.clear();
+    stress_at_nodes.clear();
     particles.clear();
     for (ExactSums<ContactSums<D>>& one : contacts)
       one.clear();
@@ -110,7 +110,7 @@ void add_step(const StepSums<D>& sums, const Vec<D>& gravity, Real kick, MassLed
       nodes.kinetic_after - nodes.kinetic_before - boundary.arrival - contact.pressure - rigid.arrival + beyond.friction + beyond.moved;
   energy.remap += sums.remap.value();
   energy.loads += sums.work_on_mesh.value() + sums.work_on_particles.value();
-  energy.internal += sums.internal.value() - sums.pore.value();
+  energy.internal += sums.internal.value() - sums.stress_at_nodes.value();
   energy.internal_ahead = sums.internal.value() / 2;
   energy.loads_ahead = sums.work_on_particles.value() / 2;
 }

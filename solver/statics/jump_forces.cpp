@@ -1,7 +1,6 @@
 #include "solver/statics/jump_forces.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "materials/parts/logarithm.hpp"
 
 namespace talus {
 
@@ -15,7 +14,7 @@ Real size_of_deviator(const Mat3& of) { return (of - of.trace() / 3 * Mat3::Iden
 }  // namespace
 
 template <int D>
-void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic, const Particles<D>& particles)
+void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic)
 {
   const Mesh<D>& mesh = problem.mesh;
   shear_ = elastic.shear();
@@ -30,43 +29,32 @@ void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffn
   for (Real& one : shear)
     one *= stiffness_of_jumps;
   jumps_ = GradientJumps<D>(mesh, filled, shear);
-  seen_.assign(to_size(mesh.n_cells()), {});
-  for (std::size_t p = 0; p < particles.id.size(); ++p) {
-    const Index c = particles.cell[p];
-    const auto N = mesh.barycentric(c, particles.x[p]);
-    for (std::size_t a = 0; a <= D; ++a)
-      seen_[to_size(c)][a] += particles.volume[p] / filled[to_size(c)] * N[a];
-  }
 }
 
-/// The share rho of q that is left in a cell.
+/// Finds rho and R of a cell.
 template <int D>
-Real JumpForces<D>::left_in(const Mesh<D>& mesh, Index c) const
+void JumpForces<D>::find_left(Index c)
 {
   const auto i = to_size(c);
   if (!(before_.volume[i] > 0) || !(shear_[i] > 0))
-    return 1;
-  Mat3 gradient = Mat3::Zero();
-  for (std::size_t a = 0; a <= D; ++a)
-    gradient.template topLeftCorner<D, D>() += seen_[i][a] * jumps_.mean(mesh.cell(c)[a]);
+    return;
+  const Mat3 f = now_.F[i] * before_.F[i].inverse(), R = polar_rotation(f), stretch = R.transpose() * f - Mat3::Identity();
   const Mat3 before = unpack(before_.stress[i] / before_.volume[i]), now = unpack(now_.stress[i] / now_.volume[i]);
-  const Mat3 change = shear_[i] / before_.volume[i] * (gradient + gradient.transpose());
-  const Real found = size_of_deviator(now), elastic = size_of_deviator(before + change);
-  return found < elastic ? found / elastic : 1;
+  const Real elastic = size_of_deviator(before + 2 * shear_[i] / before_.volume[i] * stretch), found = size_of_deviator(now);
+  left_[i] = found < elastic ? found / elastic : 1;
+  turned_[i] = R.template topLeftCorner<D, D>();
 }
 
 template <int D>
 void JumpForces<D>::take_stress(const Mesh<D>& mesh, const ParticleStrips<D>& strips)
 {
-  now_ = JumpSums<D>(mesh, strips);
+  now_ = JumpSums<D>(mesh, strips, true);
   left_.assign(now_.volume.size(), 1);
   turned_.assign(left_.size(), Mat<D>::Identity());
   of_jump_.assign(left_.size(), Mat<D>::Zero());
   for (const auto& one : jumps_.cells()) {
-    const auto c = to_size(one.cell);
-    left_[c] = left_in(mesh, one.cell);
-    turned_[c] += (one.gradient - one.gradient.transpose()) / 2;
-    of_jump_[c] = one.modulus * one.jump;
+    find_left(one.cell);
+    of_jump_[to_size(one.cell)] = one.modulus * one.jump;
   }
 }
 
@@ -75,7 +63,7 @@ void JumpForces<D>::store(ParticleStrips<D>& strips) const
 {
   for_each_in_cells(strips, [&](Index cell, const StripColumns<D>& columns, std::size_t p) {
     if (const std::size_t c = to_size(cell); columns.jump_stress)
-      columns.jump_stress.set(p, left_[c] * (turned_[c] * columns.jump_stress.of(p) * turned_[c].transpose() + of_jump_[c]));
+      columns.jump_stress.set(p, left_[c] * turned_[c] * (columns.jump_stress.of(p) + of_jump_[c]) * turned_[c].transpose());
   });
 }
 
@@ -92,8 +80,8 @@ std::vector<Vec<D>> JumpForces<D>::find(const Problem<D>& problem, std::initiali
       else if (part == Part::empty_cells && now_.volume[c] == 0)
         stress[c] += share_of_empty * mesh.volume(one.cell) * of_jump_[c];
       else if (part == Part::particles && now_.volume[c] > 0)
-        stress[c] += now_.in_cell(
-            mesh, one.cell, Mat<D>(left_[c] * (turned_[c] * now_.jump_stress[c] * turned_[c].transpose() + now_.volume[c] * of_jump_[c])));
+        stress[c] += now_.in_cell(mesh, one.cell,
+                                  left_[c] * turned_[c] * (now_.jump_stress[c] + now_.volume[c] * of_jump_[c]) * turned_[c].transpose());
     }
   if (!problem.subdomain.alone()) {
     cells_.send(stress, Numbers{});

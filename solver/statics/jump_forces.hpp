@@ -11,16 +11,17 @@ namespace talus {
 
 /// Particles have a stress q [Pa] that acts on the jumps J_c of their cell, see GradientJumps.  In an increment with the displacements u
 ///
-///     q <- rho ( R q R^T + k mu J_c(u) ),     rho = min(1, |s| / |s_0 + 2 mu e|),
+///     q <- rho R ( q + k mu J_c(u) ) R^T,     rho = min(1, |s| / |s_0 + 2 mu e|),
 ///
-/// with the shear modulus mu, the rotation R = 1 + skew(grad u), the deviatoric stress s of the particles of the cell at the end, s_0 at the
-/// beginning, and the deviatoric strain e of the increment.  So it is elastic where the material is, and where this yields it relaxes as the
-/// deviatoric stress does.  Empty cells beside the surface have a stiffness within the increment, which supports nodes beyond the surface.
+/// with the shear modulus mu, the rotation R and the deviatoric strain e = dev(U - 1) of the polar decomposition R U of the mean
+/// deformation of the particles of the cell, and their mean deviatoric stress s_0 before, s after.  So it is elastic where the material is,
+/// and where this yields it relaxes as the deviatoric stress does.  Empty cells beside the surface have a stiffness within the increment,
+/// which supports nodes beyond the surface.
 template <int D>
 class JumpForces {
  public:
-  /// Takes filled cells and their stiffness, of the particles in the columns, and the sums of take_start().  Collective.
-  void set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic, const Particles<D>& particles);
+  /// Takes filled cells and their stiffness.  Collective.
+  void set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic);
 
   /// Calls f(cell, volume times stiffness [N m]) for the cells that have one, all as if they were full.
   template <class F>
@@ -30,7 +31,7 @@ class JumpForces {
       f(one.cell, mesh.volume(one.cell) * one.modulus);
   }
   /// Takes the stress of the particles in strips as that with which the increment begins.
-  void take_start(const Mesh<D>& mesh, const ParticleStrips<D>& strips) { before_ = JumpSums<D>(mesh, strips); }
+  void take_start(const Mesh<D>& mesh, const ParticleStrips<D>& strips) { before_ = JumpSums<D>(mesh, strips, true); }
   /// Takes the displacements of all nodes [m].
   void take_displacements(const Mesh<D>& mesh, const std::vector<Vec<D>>& u) { jumps_.find(mesh, u); }
   /// Takes the stress that the particles in strips have by these displacements, still in the cells in which they were at the beginning.
@@ -43,11 +44,10 @@ class JumpForces {
   std::vector<Vec<D>> find(const Problem<D>& problem, std::initializer_list<Part> parts);
 
  private:
-  Real left_in(const Mesh<D>& mesh, Index c) const;
+  void find_left(Index c);
 
   GradientJumps<D> jumps_;
-  std::vector<std::array<Real, D + 1>> seen_;  ///< by cell: mean shape functions of its particles
-  std::vector<Real> shear_;                    ///< by cell: volume times shear modulus of its particles at the beginning [N m]
+  std::vector<Real> shear_;  ///< by cell: volume times shear modulus of its particles at the beginning [N m]
   JumpSums<D> before_, now_;
   std::vector<Real> left_;       ///< by cell: rho
   std::vector<Mat<D>> turned_;   ///< by cell: R

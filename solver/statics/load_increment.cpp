@@ -59,7 +59,7 @@ void LoadIncrement<D>::set_stiffness()
 {
   const Problem<D>& problem = m_.problem;
   elastic_ = ElasticStiffness<D>(problem.mesh, m_.state, m_.transfer->averages_gradients());
-  jumps_.set_stiffness(problem, elastic_, m_.state.particles);
+  jumps_.set_stiffness(problem, elastic_);
   jumps_.for_each_cell(problem.mesh, [&](Index c, Real stiffness) {
     if (problem.subdomain.alone() || problem.subdomain.owns_cell(c))
       elastic_.support(c, stiffness);
@@ -75,6 +75,13 @@ std::vector<Vec<D>> LoadIncrement<D>::jump_forces(std::initializer_list<JumpPart
   m_.work.fields.front().small_mass_nodes.give(
       m_.problem.own, [](Index, const Vec<D>& force) { return force; }, forces);
   return forces;
+}
+
+/// Those of the stress that particles keep: none where the column is missing.
+template <int D>
+std::vector<Vec<D>> LoadIncrement<D>::kept_jump_forces(JumpPart part)
+{
+  return m_.problem.columns.jump_stress ? jump_forces({part}) : std::vector<Vec<D>>(to_size(m_.problem.mesh.n_nodes()), Vec<D>::Zero());
 }
 
 /// Which changes of displacement the conditions leave free, as they were in the last trial.

@@ -41,6 +41,7 @@ class LoadIncrement {
   std::vector<Vec<D>> displacements();
   using JumpPart = typename JumpForces<D>::Part;
   std::vector<Vec<D>> jump_forces(std::initializer_list<JumpPart> parts);
+  std::vector<Vec<D>> kept_jump_forces(JumpPart part);
   void set_constraints();
   void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
   bool move(std::span<const Real> x, Then then);
@@ -72,10 +73,9 @@ class LoadIncrement {
   ElasticStiffness<D> elastic_;
   std::vector<typename ElasticStiffness<D>::OfNode> stiffness_;  ///< of each node with unknowns, s above
   JumpForces<D> jumps_;
-  std::vector<Vec<D>> jump_;  ///< by node: their forces in the last trial [N]
-  // The same at the beginning and at the end, as steps have them: of the stress that particles have.
-  std::vector<Vec<D>> jump_before_, jump_after_;
-  Real force_ = 1;  ///< unit of residuals [N]
+  std::vector<Vec<D>> jump_;        ///< by node: their forces in the last trial [N]
+  std::vector<Vec<D>> jump_after_;  ///< by node: those that steps have at its end [N]
+  Real force_ = 1;                  ///< unit of residuals [N]
   // Of each node with unknowns.
   std::vector<Mat<D>> free_;               ///< changes of displacement that its conditions leave free
   std::vector<Vec<D>> reaction_, weight_;  ///< in the last trial [N]

@@ -146,7 +146,7 @@ void update_balances(Model<D>& m)
   Workspace<D>& work = m.work;
   StepSums<D>& sums = work.sums;
   problem.ranks->sum(sums.digits, sums.removed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes, sums.balance,
-                     sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.pore, sums.remap, sums.particles,
+                     sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.stress_at_nodes, sums.remap, sums.particles,
                      state.boundary.pushed(), std::span(sums.contacts), std::span(sums.rigid));
   state.boundary.keep_impulses();
   for (std::size_t law = 0; law < state.contacts.size(); ++law)

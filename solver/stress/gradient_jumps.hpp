@@ -13,7 +13,7 @@ namespace talus {
 /// Kernels that average gradients over the cells around a node do not see displacements that alternate from node to node: such modes have
 /// no stiffness.  Nodes beyond a free surface that cuts cells have hardly any.  What the average leaves out is the jump of a cell,
 ///
-///     J_c(u) = grad u_c - 1/(D + 1) sum_(n of c) G_n,     G_n = sum_c V_c grad u_c / sum_c V_c over the cells of n,
+///     J_c(u) = grad u_c - mean of G_n over the nodes n of c,     G_n = sum_c V_c grad u_c / sum_c V_c over the cells of n,
 ///
 /// with the filled volume V_c [m^D].  It vanishes for linear fields; of smooth ones it is of the order h^2.  A stress T_c [N m, over the
 /// volume of the cell] that acts on it has forces at the nodes, by the transpose of J_c.  Dohrmann & Bochev (Int. J. for Numerical Methods in
@@ -65,8 +65,6 @@ class GradientJumps {
       for_each_filled(mesh, one.cell, [&](Index n, Real weight) { one.jump -= weight * mean_[to_size(n)]; });
     }
   }
-  /// The mean G_n of the cells around a node.
-  const Mat<D>& mean(Index n) const noexcept { return mean_[to_size(n)]; }
 
   /// Adds the forces [N] of stress by cell [N m] to those of the nodes: the work that they do is minus that of the stress on the jumps.
   void add_forces(const Mesh<D>& mesh, const std::vector<Mat<D>>& stress, std::vector<Vec<D>>& force)

@@ -11,8 +11,8 @@ namespace talus {
 /// Of the stiffness against jumps in cells that are full, that of the part of a cell that is not.
 inline constexpr Real share_of_empty = 0.1;
 
-/// Calls f(cell, columns, place in them) for each particle in strips, in parallel; those of one cell in the order of groups.  Particles that a
-/// step has moved are in the cell that they come from.
+/// Calls f(cell, columns, place in them) for each particle in strips, in parallel; those of one cell in the order of groups.  Particles that
+/// a step has moved are in the cell that they come from.
 template <int D, class F>
 void for_each_in_cells(const ParticleStrips<D>& strips, F&& f)
 {
@@ -32,20 +32,25 @@ void for_each_in_cells(const ParticleStrips<D>& strips, F&& f)
 template <int D>
 struct JumpSums {
   std::vector<Real> volume;         ///< [m^D]
-  std::vector<Sym3> stress;         ///< volume times stress [N m]
   std::vector<Mat<D>> jump_stress;  ///< volume times the stress q against jumps [N m]
+  std::vector<Sym3> stress;         ///< volume times stress [N m]
+  std::vector<Mat3> F;              ///< initial volume times deformation gradient [m^D]
 
   JumpSums() = default;
-  JumpSums(const Mesh<D>& mesh, const ParticleStrips<D>& strips)
-      : volume(to_size(mesh.n_cells()), 0), stress(volume.size(), Sym3::Zero()), jump_stress(volume.size(), Mat<D>::Zero())
+  /// Stress and F only if `of_material`.
+  JumpSums(const Mesh<D>& mesh, const ParticleStrips<D>& strips, bool of_material)
+      : volume(to_size(mesh.n_cells()), 0), jump_stress(volume.size(), Mat<D>::Zero())
   {
+    if (of_material)
+      stress.assign(volume.size(), Sym3::Zero()), F.assign(volume.size(), Mat3::Zero());
     for_each_in_cells(strips, [&](Index cell, const StripColumns<D>& columns, std::size_t p) {
       const Real of_particle = columns.volume.of(p);
       const std::size_t c = to_size(cell);
       volume[c] += of_particle;
-      stress[c] += of_particle * columns.stress.of(p);
       if (columns.jump_stress)
         jump_stress[c] += of_particle * columns.jump_stress.of(p);
+      if (of_material)
+        stress[c] += of_particle * columns.stress.of(p), F[c] += columns.volume0.of(p) * columns.F.of(p);
     });
   }
   /// What a sum of volume times q is for the whole cell: the part that is not filled adds a share.
@@ -70,7 +75,7 @@ class JumpStress {
   /// Finds the forces at the nodes [N], of the particles in strips.  Collective.
   void find(const Mesh<D>& mesh, const Subdomain& subdomain, const ParticleStrips<D>& strips)
   {
-    JumpSums<D> sums(mesh, strips);
+    JumpSums<D> sums(mesh, strips, false);
     for (Index c = 0; c < mesh.n_cells(); ++c)
       sums.jump_stress[to_size(c)] = sums.in_cell(mesh, c, sums.jump_stress[to_size(c)]);
     if (!subdomain.alone()) {
@@ -80,7 +85,7 @@ class JumpStress {
     force_.assign(to_size(mesh.n_nodes()), Vec<D>::Zero());
     GradientJumps<D>(mesh, sums.volume, sums.volume).add_forces(mesh, sums.jump_stress, force_);
   }
-  const Vec<D>& at(Index n) const noexcept { return force_[to_size(n)]; }
+  const std::vector<Vec<D>>& forces() const noexcept { return force_; }  ///< by node
 
  private:
   HaloExchange cells_;

@@ -35,7 +35,10 @@ class Remap {
         find_velocities(mid);
       }
     for (const Rows& of : fields_)
-      add_ranges(nodes_of(m_, of).in_use.own(), m_.work.sums.remap, [&](Index n) { return remap_work(nodes_of(m_, of), n); });
+      add_ranges(nodes_of(m_, of).in_use.own(), m_.work.sums.remap, [&](Index n) {
+        const Nodes<D>& nodes = nodes_of(m_, of);
+        return remap_work<D>(nodes, n, nodes.sum[to_size(n)].force);
+      });
     if constexpr (Rows::projects)
       for (Rows& of : fields_) {
         of.extension.find_velocities(m_.problem.own, of.ghosts.near, nodes_of(m_, of).remapped);
