@@ -118,9 +118,10 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
   soak(m.problem.mesh, {m.problem.water, ramp * m.problem.loads.gravity.table(time)}, m.state.bodies, follows_table, stress_of,
        m.state.particles);
   if (!stage.start_stress.empty())
-    set_start_stress(m.problem.mesh, m.problem.subdomain, *m.problem.ranks, m.problem.loads.gravity(time, ramp),
-                     std::span(stage.start_stress), m.work.order, only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials,
-                     m.state.particles);
+    set_start_stress(
+        m.problem.mesh, m.problem.subdomain, *m.problem.ranks, m.problem.loads.gravity(time, ramp), std::span(stage.start_stress),
+        m.work.order, only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials, m.state.particles,
+        [&](const Vec<D>& x) { return m.problem.flow.pond_pressure(x[D - 1], time, ramp * m.problem.loads.gravity.table(time)); });
   if (stage.equilibrium)
     set_to_rest(m);
   const Real kinetic = totals(m).kinetic;

@@ -314,6 +314,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.conditions.flow = flow_of(scene, mesh, at_start, setup.state.bodies, errors, setup.warnings);
   for (MeshTraction<D>& load : open_water_of(scene, mesh, at_start))
     setup.conditions.loads.on_mesh.push_back(std::move(load));
+  for (SurfaceLoad<D>& load : pond_of<D>(scene, setup.conditions.flow, setup.state.bodies))
+    setup.conditions.loads.on_surfaces.push_back(std::move(load));
   saturate(scene, 0, mesh, setup.conditions.water, setup.state.bodies, setup.state.particles);
   set_start_states(scene, mesh, ranks, errors, setup);
   if (scene.water && scene.water->table) {

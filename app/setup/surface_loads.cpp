@@ -62,7 +62,8 @@ class SurfaceLoadBuilder {
     load_.body = static_cast<Index>(found - setup.state.bodies.begin());
     load_.traction = vector_of<D>(spec.traction);
     load_.pressure = spec.water_level ? spec.unit_weight : spec.pressure.value_or(0);
-    load_.water_level = spec.water_level.value_or(load_.water_level);
+    if (spec.water_level)
+      load_.water_level = Table{{{0, *spec.water_level}}};
     load_.table = spec.table;
     load_.where = spec.where;
   }

@@ -53,8 +53,15 @@ struct WaterAboveGround {
   Vec<D> deepest = Vec<D>::Zero();  ///< where it is most
 };
 
+/// The level of the pond of a scene at the start [m]: where the ground lies below it, water does not end at the ground.
+Real pond_at_start(const Scene& scene)
+{
+  const auto& flow = scene.water->flow;
+  return flow && flow->pond ? flow->pond->level * flow->pond->table(0) : -std::numeric_limits<Real>::infinity();
+}
+
 template <int D, class Table_>
-WaterAboveGround<D> flood_of(const Ground<D>& ground, const Table_& table)
+WaterAboveGround<D> flood_of(const Ground<D>& ground, Real pond, const Table_& table)
 {
   constexpr Real none_yet = std::numeric_limits<Real>::infinity();
   WaterAboveGround<D> flood{.least = none_yet, .most = -none_yet};
@@ -62,7 +69,7 @@ WaterAboveGround<D> flood_of(const Ground<D>& ground, const Table_& table)
     Vec<D> middle = Vec<D>::Zero();
     for (const Vec<D>& corner : piece.corners)
       middle += corner / D;
-    const Real above = table(middle) - middle[D - 1];
+    const Real above = table(middle) - std::max(middle[D - 1], pond);
     if (std::isnan(above))
       continue;  // found at the nodes too
     flood.area += piece.area;
@@ -123,12 +130,14 @@ std::vector<Real> table_at_nodes(const Scene& scene, const SurfaceSpec& spec, co
       return ground(place) - *spec.depth;
     return given(mesh.map() ? mesh.map()->to_map(place[0], place[1]) : place);
   };
-  judge(flood_of<D>(ground, table), spec.where, errors, warnings);
+  const Real pond = pond_at_start(scene);
+  judge(flood_of<D>(ground, pond, table), spec.where, errors, warnings);
 
   std::vector<Real> at_nodes(static_cast<std::size_t>(mesh.n_nodes()));
   parallel_for(mesh.n_nodes(), [&](Index n) {
     const Vec<D>& x = mesh.node(n);
-    at_nodes[static_cast<std::size_t>(n)] = std::min(table(x), ground(Ground<D>::plan(x)));  // NaN if the table is, in this order
+    const Real top = ground(Ground<D>::plan(x));
+    at_nodes[static_cast<std::size_t>(n)] = top < pond ? pond : std::min(table(x), top);  // NaN if the table is, in this order
   });
   std::vector<std::uint8_t> needed(at_nodes.size(), 0);
   for (Index c = 0; c < mesh.n_cells(); ++c)

@@ -95,6 +95,19 @@ struct RainSpec {
   }
 };
 
+/// Open water on the surface of bodies as they move.
+struct PondSpec {
+  Real level{};
+  Table table;
+  SourceLocation where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("level", &PondSpec::level, any, "m",
+                               "elevation of the surface of that water: what lies below it is under water, whose weight presses on it"),
+                      optional("table", &PondSpec::table, any, "-", "factor of the level in time: list of [time, factor]")};
+  }
+};
+
 enum class SurfaceFlow : std::uint8_t { drained, impermeable };
 constexpr std::array<std::string_view, 2> enum_names(SurfaceFlow) { return {"drained", "impermeable"}; }
 
@@ -104,6 +117,7 @@ struct FlowSpec {
   std::vector<HeadSpec> heads;
   std::vector<InflowSpec> inflow;
   std::optional<RainSpec> rain;
+  std::optional<PondSpec> pond;
   Table pace;
   SurfaceFlow surface = SurfaceFlow::drained;
   SourceLocation where;
@@ -116,6 +130,10 @@ struct FlowSpec {
         optional_list("inflow", &FlowSpec::inflow, "facet groups through which a given volume of water flows in, such as rain"),
         group("rain", &FlowSpec::rain,
               "on the surface of the bodies as they move; what the soil cannot take up runs off. It needs pores with a retention"),
+        group(
+            "pond", &FlowSpec::pond,
+            "open water on the surface of the bodies as they move, away from walls: below its level the pore pressure there is that of the "
+            "depth, and the water presses on all bodies with its weight"),
         optional("pace", &FlowSpec::pace, any, "-",
                  "how many times faster water flows than permeabilities, inflow and rain say, in time: list of [time, factor]. Hours of "
                  "seepage then pass in seconds; give 1 from where soil begins to move"),

@@ -189,6 +189,8 @@ class Rules : private SceneRuleBase {
       add("water.flow.heads[0]", "open water has no weight without a load of type gravity");
     if (water.flow && !weighs && water.flow->rain)
       add("water.flow.rain", "rain does not fall without a load of type gravity");
+    if (water.flow && !weighs && water.flow->pond)
+      add("water.flow.pond", "open water has no weight without a load of type gravity");
     for (std::size_t i = 0; water.flow && i < scene_.loads.size(); ++i)
       if (const auto* load = std::get_if<BodyForceSpec>(&scene_.loads[i]); load != nullptr && load->place == PlaceOf::start)
         add(fmt::format("loads[{}].place", i), "flowing water has no place at the start: use now, or leave out water.flow");

@@ -103,6 +103,7 @@ struct Flow {
   std::vector<HeadBoundary> heads;
   std::vector<InflowBoundary> inflows;
   std::optional<Table> rain;   ///< volume per horizontal area and time on the surface of the bodies [m/s]
+  std::optional<Table> pond;   ///< elevation in time of the level of open water on the surface of the bodies [m]
   Table pace;                  ///< how many times faster water flows, in time
   bool surface_drains = true;  ///< whether the pressure is zero at the surface of the bodies
   Real unit_weight{};          ///< of water [N/m^3]
@@ -115,6 +116,11 @@ struct Flow {
   bool flows(Index body) const noexcept { return any() && bodies[static_cast<std::size_t>(body)].flows; }
   /// The pores of a body through which water flows, or nullptr.
   const FlowOfBody* pores_of(std::size_t body) const noexcept { return any() && bodies[body].flows ? &bodies[body] : nullptr; }
+  /// The pressure of the pond [Pa] at an elevation [m], while a share of gravity acts.
+  Real pond_pressure(Real elevation, Real time, Real share) const noexcept
+  {
+    return pond ? share * unit_weight * std::max((*pond)(time)-elevation, Real{0}) : 0;
+  }
   /// The part of total stress that a pressure of the water in a body makes [Pa].
   Real stress_of(Index body, Real p) const noexcept { return flows(body) ? bodies[static_cast<std::size_t>(body)].stress_of(p) : p; }
 };

@@ -1,5 +1,7 @@
 #include "solver/flow/flow_system.hpp"
 
+#include <limits>
+
 #include "solver/state/sums.hpp"
 
 namespace talus {
@@ -100,6 +102,15 @@ void FlowSystem<D>::find_given_pressures(const FlowModel<D>& m, const FlowCells<
     if (!retains || (pressure[to_size(n)] >= 0 && right_[to_size(n)] >= 0))
       give(n, 0);
   };
+  const Real weight = step.weight.norm();
+  const auto lie_below = [&](Index n, Real level) {
+    if (const Real depth = level - mesh.node(n)[D - 1]; depth > 0)
+      give(n, weight * depth);
+    else if (at_[to_size(n)] != NodePressure::given)  // by other water at this node
+      drain(n);
+  };
+  constexpr Real dry = -std::numeric_limits<Real>::infinity();
+  const Real pond = m.flow.pond ? (*m.flow.pond)(step.end) : dry;
   if (m.flow.surface_drains)
     m.field.nodes.in_use.for_each([&](Index n) {
       if (!is_unknown(n))
@@ -110,15 +121,11 @@ void FlowSystem<D>::find_given_pressures(const FlowModel<D>& m, const FlowCells<
         least = std::min(least, cells[c].filled / mesh.volume(c));
       }
       if (filled < full_around * size && least < Rain<D>::full_cell)
-        drain(n);
+        lie_below(n, pond);
     });
-  const Real weight = step.weight.norm();
   for (const HeadBoundary& head : m.flow.heads)
     for (const Index n : head.nodes)
-      if (const Real depth = head.drained ? 0 : head.level(step.end) - mesh.node(n)[D - 1]; depth > 0)
-        give(n, weight * depth);
-      else if (at_[to_size(n)] != NodePressure::given)  // by other water at this node
-        drain(n);
+      lie_below(n, head.drained ? dry : head.level(step.end));
 }
 
 /// How velocities answer to forces.

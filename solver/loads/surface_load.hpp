@@ -2,7 +2,7 @@
 // Loads on surfaces of bodies that cut cells, as a virtual stress.
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/error.hpp"
@@ -30,6 +30,8 @@ struct NearSide {
 /// (after the virtual stress boundary of Given, Soga et al. 2024).  Inside of the body they are zero up to quadrature, since S has no
 /// divergence; X_v falls there from 1 to 0, so that the far end of S loads nothing.  The theory is in docs/theory/walls.md#surfaces-that-cut-cells.
 ///
+/// Inside, forces of stress and load have the same errors of quadrature, so a load on the whole surface, whose X is 1 everywhere, leaves none.
+///
 ///     pressure on the whole surface or on a closed part of it   S = -p I
 ///     pressure on a side                                        S = -p (F^-T N) (x) (F m)
 ///     traction t per initial area, direction fixed              J S = t (x) (F m)
@@ -38,10 +40,10 @@ struct SurfaceLoad {
   Index body = none;
   Vec<D> traction = Vec<D>::Zero();  ///< [Pa]
   Real pressure{};                   ///< [Pa], or [N/m^3] with a water level, positive in compression
-  Real water_level =
-      std::numeric_limits<Real>::infinity();  ///< the pressure grows below this height [m]; infinite: it is the same everywhere
+  std::optional<Table> water_level;  ///< height in time below which the pressure grows [m]; none: it is the same everywhere
   Table table;
   SourceLocation where;
+  bool ends_at_walls = false;     ///< no load where the surface lies on the boundary of the mesh
   bool is_closed = false;         ///< the loaded part of the surface has no edge
   Real reach = 0;                 ///< depth at which X has fallen to 0 [m]; 0: X is 1 everywhere
   Real deep = 0;                  ///< depth of the particles that are not near, more than the reach [m]
@@ -59,9 +61,15 @@ struct SurfaceLoad {
     return 1 - s * s * (3 - 2 * s);
   }
   /// The largest depth of water above a height [m]; 1 where the pressure is the same everywhere.
-  Real largest_height(Real bottom) const noexcept { return std::isinf(water_level) ? Real{1} : std::max(water_level - bottom, Real{0}); }
+  Real largest_height(Real bottom) const noexcept
+  {
+    return water_level ? std::max(water_level->largest_magnitude() - bottom, Real{0}) : Real{1};
+  }
   /// The factor of the load at a place and a time; `ramp` is that of the stage.
-  Real factor(const Vec<D>& x, Real time, Real ramp) const noexcept { return ramp * table(time) * largest_height(x[D - 1]); }
+  Real factor(const Vec<D>& x, Real time, Real ramp) const noexcept
+  {
+    return ramp * table(time) * (water_level ? std::max((*water_level)(time)-x[D - 1], Real{0}) : Real{1});
+  }
 };
 
 /// V S of a particle without the factor [N m, or N with a water level], and its depth [m].

@@ -117,7 +117,8 @@ std::vector<Above> weight_above(const Mesh<D>& mesh, const Subdomain& subdomain,
 template <int D>
 void set_start_stress(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const Vec<D>& gravity,
                       std::span<const StartStress> start, const CellOrder& order, const std::vector<Body>& bodies,
-                      std::vector<Material>& materials, Particles<D>& particles)
+                      std::vector<Material>& materials, Particles<D>& particles,
+                      const std::type_identity_t<std::function<Real(const Vec<D>&)>>& on_ground)
 {
   const Real g = gravity.norm();
   const std::vector<Above> above = weight_above(mesh, subdomain, ranks, gravity, start, order, particles);
@@ -137,7 +138,8 @@ void set_start_stress(const Mesh<D>& mesh, const Subdomain& subdomain, Communica
         stress = *given;
       } else {
         const Real ratio = k0(above[p].depth);
-        stress = (u - g * above[p].mass) * (ratio * Mat3::Identity() + (1 - ratio) * along);
+        const Real water = on_ground ? on_ground(particles.x[p] + above[p].depth * up3.head<D>()) : 0;
+        stress = (u - g * above[p].mass - water) * (ratio * Mat3::Identity() + (1 - ratio) * along);
       }
       if (!materials[b].prestress(row - bodies[b].begin, stress))
         throw SceneErrors(
@@ -195,8 +197,10 @@ template void start_from_stress<3>(const Body&, Material&, Particles<3>&);
 template StressFit fit_stress<2>(const Body&, const Material&, Real, bool, Particles<2>&);
 template StressFit fit_stress<3>(const Body&, const Material&, Real, bool, Particles<3>&);
 template void set_start_stress<2>(const Mesh<2>&, const Subdomain&, Communicator&, const Vec<2>&, std::span<const StartStress>,
-                                  const CellOrder&, const std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+                                  const CellOrder&, const std::vector<Body>&, std::vector<Material>&, Particles<2>&,
+                                  const std::function<Real(const Vec<2>&)>&);
 template void set_start_stress<3>(const Mesh<3>&, const Subdomain&, Communicator&, const Vec<3>&, std::span<const StartStress>,
-                                  const CellOrder&, const std::vector<Body>&, std::vector<Material>&, Particles<3>&);
+                                  const CellOrder&, const std::vector<Body>&, std::vector<Material>&, Particles<3>&,
+                                  const std::function<Real(const Vec<3>&)>&);
 
 }  // namespace talus

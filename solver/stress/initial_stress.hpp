@@ -1,7 +1,9 @@
 #pragma once
 // Stress at the start: of a geostatic stage, and of bodies that come from another run.
 #include <algorithm>
+#include <functional>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "core/parallel/communicator.hpp"
@@ -23,11 +25,13 @@ struct StartStress {
 /// particle; less the pore pressure, of bodies that have one, it is the effective stress that the law sees, and the one across gravity is k0
 /// times as large; without gravity such bodies keep the stress that they have.  "Above" is followed cell by cell against gravity, so any surface
 /// and any layering is right.  To a stress that is given the pore pressure comes as well.  Throws SceneErrors, with the place of the body, if
-/// its law cannot start from a stress.  Every rank has to ask; `order` is that of the particles.
+/// its law cannot start from a stress.  Every rank has to ask; `order` is that of the particles.  `on_ground`: the pressure on the ground at a
+/// place [Pa], as of open water, which is a weight above too; none: zero.
 template <int D>
 void set_start_stress(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const Vec<D>& gravity,
                       std::span<const StartStress> start, const CellOrder& order, const std::vector<Body>& bodies,
-                      std::vector<Material>& materials, Particles<D>& particles);
+                      std::vector<Material>& materials, Particles<D>& particles,
+                      const std::type_identity_t<std::function<Real(const Vec<D>&)>>& on_ground = {});
 
 /// The body keeps its stress and forgets the deformation that led to it: F = I, and its history is that of the stress.  For laws that can
 /// start from a stress.

@@ -1,5 +1,6 @@
 #pragma once
 // Sums over particles for loads on surfaces that cut cells, and the forces of nodes that follow from them.
+#include <algorithm>
 #include <tuple>
 #include <vector>
 
@@ -84,6 +85,8 @@ class SurfaceRows {
   {
     if (!all_.empty())
       return;
+    if (std::ranges::any_of(loads, [&](const SurfaceLoad<D>& load) { return load.ends_at_walls && is_of_field(load.body); }))
+      find_walls(mesh);
     for (std::size_t k = 0; k < loads.size(); ++k) {
       if (!is_of_field(loads[k].body))
         continue;
@@ -105,6 +108,13 @@ class SurfaceRows {
     }
   }
   std::span<RowsOfLoad<D>> all() noexcept { return all_; }
+  /// Takes from the force of an own node what a load that ends at walls would exert on them, which are all of the boundary of the mesh: the
+  /// part along the mean normal there, as the area vector of a full node is that of its share of the boundary.
+  Vec<D> off_walls(Index v, const Vec<D>& force) const noexcept
+  {
+    const Vec<D>& normal = wall_[static_cast<std::size_t>(v)];
+    return force - normal.dot(force) * normal;
+  }
   /// Sums the rows on nodes.  `occupied`: of the blocks, of all ranks.  Collective.
   void assemble(std::span<const std::uint8_t> occupied, const OwnNodes& own, HaloExchange& copies, const NodesInUse& in_use)
   {
@@ -119,11 +129,22 @@ class SurfaceRows {
     std::size_t bytes = 0;
     for (const RowsOfLoad<D>& one : all_)
       bytes += (one.blocks.row.size() + one.sum.size()) * sizeof(SurfaceSum<D>) + one.force.size() * sizeof(Vec<D>);
-    return bytes;
+    return bytes + wall_.size() * sizeof(Vec<D>);
   }
 
  private:
+  void find_walls(const Mesh<D>& mesh)
+  {
+    wall_.assign(static_cast<std::size_t>(mesh.n_nodes()), Vec<D>::Zero());
+    for (const Facet facet : mesh.boundary_facets())
+      for (const Index n : mesh.nodes_of(facet))
+        wall_[static_cast<std::size_t>(n)] += mesh.area_vector(facet);
+    for (Vec<D>& normal : wall_)
+      normal.normalize();  // zero stays zero
+  }
+
   std::vector<RowsOfLoad<D>> all_;
+  std::vector<Vec<D>> wall_;  ///< by node: mean normal of the boundary of the mesh, zero inside; empty if all loads act there too
 };
 
 /// Adds the forces of loads on surfaces to own nodes, and those of each load to its `total`; the sum of all loads is left in
@@ -153,6 +174,8 @@ void apply_surface_loads(const std::vector<SurfaceLoad<D>>& loads, Real time, Re
     }
     if (!(volume > 0))
       return Vec<D>::Zero();
+    if (load.ends_at_walls)
+      pull = rows.off_walls(v, pull);
     return load.factor(mesh.node(v), time, ramp) * load.cut_off(depth / volume) * pull;
   };
   nodes.surface_loads.resize(nodes.sum.size());

@@ -145,6 +145,12 @@ inline std::vector<SceneCase> scenes_of_all()
           "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, residual: 5.0e-2}\n  - {type: run, duration: 0.05}\n"
           "  - {type: geostatic, duration: 5, residual: 8.0e-2}\n  - {type: run, duration: 0.02}\n"};
   all.push_back({"flow", flow});
+  SceneParts pond = flow;  // one that sinks through the surface of both bodies
+  pond.more =
+      "water: {table: {elevation: 0.5}, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3}, {body: high, porosity: 0.3, "
+      "permeability: 1.0e-5, retention: {entry: 2.0e3, exponent: 2, residual: 0.1}}], pond: {level: 1.3, table: [[0.05, 1], [0.2, 0.5]]}, "
+      "rain: {rate: 2.0e-4}}}\n";
+  all.push_back({"flow_pond", pond});
   SceneParts flow_umls = flow;
   flow_umls.more =
       "kernel: umls\n"
@@ -327,6 +333,9 @@ inline std::vector<SceneCase> scenes_of_all()
   flow_in_3d.more = "water: {flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3}], drained: [x_min]}}\n";
   flow_in_3d.loads = "loads: [{type: gravity, acceleration: [0, 0, -9.81]}]\n";
   all.push_back({"flow_solid", flow_in_3d});
+  flow_in_3d.more =
+      "water: {table: {elevation: 0.2}, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3}], pond: {level: 0.9}}}\n";
+  all.push_back({"flow_pond_solid", flow_in_3d});
   in_3d.law = soil_law + ", softening_length: 0.3";
   all.push_back({"softening_length_solid", in_3d});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";

@@ -107,6 +107,73 @@ TEST_F(FlowOfScene, OpenWaterIsALoad)
   EXPECT_NEAR(mean_of_last(table, "reaction_y_min_y", 100), 1e4 + 2000 * 9.81 + 2 * 9810, 0.05 * 5e4);
 }
 
+/// A layer that ends between the nodes of its mesh, under a pond of 3 m; `stages` and more follow.
+std::string layer_under_a_pond(const std::string& pond, const std::string& rest)
+{
+  return "title: Layer\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [0.75, 1.5], cells: [6, 12]}}\n"
+         "materials: [{name: soil, law: linear_elastic, density: 2000, youngs_modulus: 1.0e8, poisson_ratio: 0.25}]\n"
+         "bodies: [{name: layer, material: soil, shape: {type: box, low: [0, 0], high: [0.75, 1.04]}, particles_per_cell: 4}]\n"
+         "water: {table: {depth: 0}, flow: {bodies: [{body: layer, porosity: 0.4, permeability: 1.0e-2}], pond: " +
+         pond +
+         "}}\nloads: [{type: gravity, acceleration: [0, -10]}]\n"
+         "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n"
+         "outputs: {history: {every: 0.001}, particles: {every: 0.5, fields: [pore_pressure, effective_stress]}}\n" +
+         rest;
+}
+
+/// Root mean squares of what particles lack of the hydrostatic pressure and of the effective stress of the buoyant weight along y.
+std::pair<Real, Real> apart_from_rest(const std::filesystem::path& frame, Real level)
+{
+  const VtkLayout layout(frame, "PolyData");
+  const auto places = layout.numbers(*layout.find("Points", "Points"));
+  const auto pressure = field_of(frame, "pore_pressure"), effective = field_of(frame, "effective_stress");
+  Real water = 0, soil = 0;
+  for (std::size_t p = 0; p < pressure.size(); ++p) {
+    const Real y = places[3 * p + 1];
+    water += std::pow(pressure[p] - 9810 * (level - y), 2);
+    soil += std::pow(effective[6 * p + 1] + (2000 * 10 - 9810) * (1.04 - y), 2);
+  }
+  const auto n = static_cast<Real>(pressure.size());
+  return {std::sqrt(water / n), std::sqrt(soil / n)};
+}
+
+TEST_F(FlowOfScene, SoilUnderAPondHasItsBuoyantWeight)
+{
+  const Real pond = 9810 * (4 - 1.04), soil = 1.04 * 2000 * 10;
+  for (const std::string first :
+       {"{type: geostatic, duration: 2, residual: 1.0e-4, initial_stress: {k0: 0.5}}", "{type: static, duration: 0.1, increments: 2}"}) {
+    write("pond.yaml", layer_under_a_pond("{level: 4}", "stages: [" + first + ", {type: run, duration: 0.05}]\n"));
+    const Outcome outcome = talus("run pond.yaml --out out");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("pond"))) << "the table at the ground is that of the pond";
+    auto frame = folder_ / "out" / "particles_0000.vtp";
+    for (int n = 1; std::filesystem::exists(folder_ / "out" / fmt::format("particles_{:04}.vtp", n)); ++n)
+      frame = folder_ / "out" / fmt::format("particles_{:04}.vtp", n);
+    const auto [water, effective] = apart_from_rest(frame, 4);
+    EXPECT_LT(water, 0.002 * pond);
+    EXPECT_LT(effective, 0.03 * soil);
+    EXPECT_NEAR(mean_of_last(history("out"), "reaction_y_min_y", 20), 0.75 * (soil + pond), 0.01 * (soil + pond));
+  }
+}
+
+/// A drawdown takes its weight from the layer, and the pressure below it.
+TEST_F(FlowOfScene, APondSinks)
+{
+  write("pond.yaml", layer_under_a_pond("{level: 4, table: [[0.1, 1], [0.5, 0.5]]}", "time: {end: 1}\n"));
+  ASSERT_EQ(talus("run pond.yaml --quiet --out out --set 'bodies[0].velocity=[0, 0]'").code, 0);
+  EXPECT_NEAR(mean_of_last(history("out"), "reaction_y_min_y", 200), 0.75 * (1.04 * 2000 * 10 + 9810 * (2 - 1.04)), 600);
+  EXPECT_LT(apart_from_rest(folder_ / "out" / "particles_0002.vtp", 2).first, 0.02 * 9810);
+}
+
+TEST_F(FlowOfScene, WarnsOfPondsThatCannotStand)
+{
+  write("pond.yaml", layer_under_a_pond("{level: 4}", "time: {end: 1}\n"));
+  EXPECT_THAT(talus("check pond.yaml --set 'bodies[0].shape.high=[0.75, 1.5]'").err,
+              HasSubstr("0.75 m of the ground below its level lie on the boundary of the mesh, where no pond stands"));
+  write_scene("permeability: 1.0e-3", "drained: [y_max], pond: {level: 0.5}");
+  EXPECT_THAT(talus("check layer.yaml").err, HasSubstr("without water.table the pore pressure below the pond begins at zero"));
+}
+
 TEST_F(FlowOfScene, TakesUpALoadAtOnceAndKeepsAccountOfItsWater)
 {
   write_scene("permeability: 1.0e-3", "drained: [y_max]");

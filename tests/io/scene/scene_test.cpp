@@ -374,7 +374,7 @@ TEST(Scene, SaysHowWaterFlows)
   EXPECT_EQ(flow.bodies[1].permeability, 1e-3);
   EXPECT_EQ(flow.bodies[1].bulk_modulus, 2.2e9);
   EXPECT_FALSE(flow.bodies[1].retention.has_value());
-  EXPECT_EQ(flow.heads.at(0).level, 1.5);
+  EXPECT_EQ((std::pair{flow.heads.at(0).level, flow.pond.value().level}), (std::pair{1.5, 1.8}));
   EXPECT_EQ(flow.inflow.at(0).table(1), 1);
   EXPECT_EQ(flow.rain.value().rate, 1e-6);
   EXPECT_EQ(flow.pace(0), 100);

@@ -22,7 +22,7 @@ Model<D> saturated(
   add_body<D>(m, "soil", rubber(1e6, 0.2, 2000), D + 1, inside, velocity);
   m.problem.water = {
       .table = std::vector<Real>(static_cast<std::size_t>(m.problem.mesh.n_nodes()), -1), .drained = {1}, .unit_weight = weight};
-  m.problem.flow = {.bodies = {pores}, .heads = {}, .inflows = {}, .rain = {}, .pace = {}, .surface_drains = false, .unit_weight = weight};
+  m.problem.flow.bodies = {pores}, m.problem.flow.surface_drains = false, m.problem.flow.unit_weight = weight;
   return m;
 }
 template <int D>

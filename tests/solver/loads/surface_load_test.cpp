@@ -73,7 +73,7 @@ TEST(SurfaceLoad, GrowsWithTheDepthOfWaterTheTableAndTheRamp)
   SurfaceLoad<2> load;
   load.table.points = {{0, 0}, {10, 10}};
   EXPECT_EQ(load.factor({3, 4}, 2, 0.5), 1) << "2 by the table";
-  load.water_level = 7;
+  load.water_level = Table{{{0, 7}}};
   EXPECT_EQ(load.factor({3, 4}, 2, 0.5), 3);
   EXPECT_EQ(load.factor({3, 8}, 2, 0.5), 0) << "above the water";
 }
@@ -147,7 +147,7 @@ ForceAndMoment<D> force_of_water(Real level)
 {
   auto m = block<K, D>(0.23, 0.71);
   SurfaceLoad<D> load;
-  load.body = 0, load.pressure = 10, load.water_level = level;
+  load.body = 0, load.pressure = 10, load.water_level = Table{{{0, level}}};
   m.problem.loads.on_surfaces.push_back(load);
   make_ready(m);
   sum_on_nodes(m);
