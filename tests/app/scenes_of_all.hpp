@@ -333,8 +333,7 @@ inline std::vector<SceneCase> scenes_of_all()
   flow_in_3d.more = "water: {flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3}], drained: [x_min]}}\n";
   flow_in_3d.loads = "loads: [{type: gravity, acceleration: [0, 0, -9.81]}]\n";
   all.push_back({"flow_solid", flow_in_3d});
-  flow_in_3d.more =
-      "water: {table: {elevation: 0.2}, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3}], pond: {level: 0.9}}}\n";
+  flow_in_3d.more = "water: {table: {depth: 0}, flow: {bodies: [{body: low, porosity: 0.4, permeability: 1.0e-3}], pond: {level: 0.9}}}\n";
   all.push_back({"flow_pond_solid", flow_in_3d});
   in_3d.law = soil_law + ", softening_length: 0.3";
   all.push_back({"softening_length_solid", in_3d});
