@@ -92,7 +92,7 @@ TEST_F(StaticStage, LeavesABalanceFromWhichOtherRunsBegin)
   const HistoryTable one = history("one");
   const Real stored = last(history("rest"), "strain");
   EXPECT_LT(std::ranges::max(one["kinetic"]), 1e-3 * stored);
-  EXPECT_LT(std::abs(last(one, "energy_defect")), 1e-3 * stored);
+  EXPECT_LT(std::abs(last(one, "energy_defect")), 1e-2 * stored);
 }
 
 /// A beam of 5 m by 1.1 m with nu = 0, whose end goes down by four cells.  Its particles move into cells that were empty before, so
