@@ -110,7 +110,7 @@ class OfABank(InAFolder):
         self.write("bank.yaml", bank(STATIC))
         code, out, complaint = self.fos("--from", "1.75", "--to", "2.25", "--width", "0.25", "--jobs", "2")
         self.assertEqual(code, 0, complaint)
-        self.assertIn("6 equilibria each; fails: growth above 0.1 and steadiness above 0.5, or no equilibrium", out)
+        self.assertIn("6 equilibria each; fails: growth above 0.05 and steadiness above 0.5, or no equilibrium", out)
         self.assertAlmostEqual(self.contents()["factor_of_safety"], FACTOR, delta=0.25)  # runs find 1.875
         self.assertIn("type: static, increments: 6", Path("out/trial_1.75/summary.json").read_text(encoding="utf-8"))
         self.assertEqual(self.fos("--duration", "2")[0], 2)
