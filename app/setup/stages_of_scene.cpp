@@ -99,6 +99,7 @@ Stage stage_of(const StaticSpec& spec)
           .equilibrium = EquilibriumOptions{.increments = spec.increments,
                                             .residual = spec.residual,
                                             .most_unbalanced = spec.unbalanced,
+                                            .keeps_jump_stress = spec.keep_jump_stress,
                                             .most_iterations = spec.iterations,
                                             .most_cuts = spec.cuts},
           .start_stress = {},

@@ -201,7 +201,7 @@ struct StaticSpec : StageChanges {
   Real duration = 1, residual = 1e-8, unbalanced = 2e-2;
   int increments = 10, iterations = 50, cuts = 10;
   std::optional<bool> grow;
-  bool elastic = false, reset_displacement = false;
+  bool keep_jump_stress = true, elastic = false, reset_displacement = false;
   std::optional<K0Spec> initial_stress;
   SourceLocation where;
   static constexpr auto fields()
@@ -219,6 +219,9 @@ struct StaticSpec : StageChanges {
                 "unbalanced", &StaticSpec::unbalanced, positive, "-",
                 "the stage fails if at its end a larger share of the loads is out of balance without the stiffness that the solver gives "
                 "to displacements that the kernel does not see"),
+            optional("keep_jump_stress", &StaticSpec::keep_jump_stress, any, "-",
+                     "whether particles keep the stress against displacements that the kernel does not see; false: it begins anew in each "
+                     "increment, so that ground which does not stand moves on in each"),
             optional("grow", &StaticSpec::grow, any, "-",
                      "whether gravity and loads grow from zero; default true in the first stage if its bodies begin without "
                      "stress, else false: they "

@@ -12,8 +12,9 @@ struct EquilibriumOptions {
   /// The stage fails if at its end more is out of balance in the kernel's own balance, without the stiffness that modes without any are
   /// given: unbalanced force over the loads [-].
   std::optional<Real> most_unbalanced{};
-  int most_iterations = 50;  ///< of Newton's method in an increment
-  int most_cuts = 10;        ///< of an increment that is not solved, in halves
+  bool keeps_jump_stress = true;  ///< from one increment to the next, see JumpForces
+  int most_iterations = 50;       ///< of Newton's method in an increment
+  int most_cuts = 10;             ///< of an increment that is not solved, in halves
 };
 
 }  // namespace talus

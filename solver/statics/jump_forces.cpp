@@ -31,7 +31,7 @@ void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffn
   jumps_ = GradientJumps<D>(mesh, filled, shear);
 }
 
-/// Finds rho and R of a cell.
+/// Finds R of a cell, and its rho by its own particles.
 template <int D>
 void JumpForces<D>::find_left(Index c)
 {
@@ -46,9 +46,9 @@ void JumpForces<D>::find_left(Index c)
 }
 
 template <int D>
-void JumpForces<D>::take_stress(const Mesh<D>& mesh, const ParticleStrips<D>& strips)
+void JumpForces<D>::take_stress(const Problem<D>& problem, const ParticleStrips<D>& strips)
 {
-  now_ = JumpSums<D>(mesh, strips, true);
+  now_ = JumpSums<D>(problem.mesh, strips, true);
   left_.assign(now_.volume.size(), 1);
   turned_.assign(left_.size(), Mat<D>::Identity());
   of_jump_.assign(left_.size(), Mat<D>::Zero());
@@ -56,6 +56,25 @@ void JumpForces<D>::take_stress(const Mesh<D>& mesh, const ParticleStrips<D>& st
     find_left(one.cell);
     of_jump_[to_size(one.cell)] = one.modulus * one.jump;
   }
+  spread_least_left(problem);
+}
+
+/// Gives each cell the least rho of the cells with which it has a node.
+template <int D>
+void JumpForces<D>::spread_least_left(const Problem<D>& problem)
+{
+  const Mesh<D>& mesh = problem.mesh;
+  if (!problem.subdomain.alone()) {
+    cells_.send(left_, Numbers{});
+    cells_.take(left_, Numbers{});
+  }
+  std::vector<Real> at_node(to_size(mesh.n_nodes()), 1);
+  for (const auto& one : jumps_.cells())
+    for (const Index n : mesh.cell(one.cell))
+      at_node[to_size(n)] = std::min(at_node[to_size(n)], left_[to_size(one.cell)]);
+  for (const auto& one : jumps_.cells())
+    for (const Index n : mesh.cell(one.cell))
+      left_[to_size(one.cell)] = std::min(left_[to_size(one.cell)], at_node[to_size(n)]);
 }
 
 template <int D>

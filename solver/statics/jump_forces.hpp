@@ -15,7 +15,8 @@ namespace talus {
 ///
 /// with the shear modulus mu, the rotation R and the deviatoric strain e = dev(U - 1) of the polar decomposition R U of the mean
 /// deformation of the particles of the cell, and their mean deviatoric stress s_0 before, s after.  So it is elastic where the material is,
-/// and where this yields it relaxes as the deviatoric stress does.  Empty cells beside the surface have a stiffness within the increment,
+/// and where this yields it relaxes as the deviatoric stress does.  The least rho of the cells with which a cell has a node is its own: beside
+/// soil that yields, stronger material would else hold it.  Empty cells beside the surface have a stiffness within the increment,
 /// which supports nodes beyond the surface.
 template <int D>
 class JumpForces {
@@ -35,7 +36,8 @@ class JumpForces {
   /// Takes the displacements of all nodes [m].
   void take_displacements(const Mesh<D>& mesh, const std::vector<Vec<D>>& u) { jumps_.find(mesh, u); }
   /// Takes the stress that the particles in strips have by these displacements, still in the cells in which they were at the beginning.
-  void take_stress(const Mesh<D>& mesh, const ParticleStrips<D>& strips);
+  /// Collective.
+  void take_stress(const Problem<D>& problem, const ParticleStrips<D>& strips);
   /// Gives the particles, in the cells in which they were at the beginning, the stress q at the end.
   void store(ParticleStrips<D>& strips) const;
 
@@ -45,6 +47,7 @@ class JumpForces {
 
  private:
   void find_left(Index c);
+  void spread_least_left(const Problem<D>& problem);
 
   GradientJumps<D> jumps_;
   std::vector<Real> shear_;  ///< by cell: volume times shear modulus of its particles at the beginning [N m]

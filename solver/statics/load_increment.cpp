@@ -169,7 +169,7 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   if (then == Then::locate)
     jumps_.take_start(m_.problem.mesh, *work.strips);
   else if (then == Then::forces)
-    jumps_.take_stress(m_.problem.mesh, *work.strips);
+    jumps_.take_stress(m_.problem, *work.strips);
   else
     jumps_.store(*work.strips);
   m_.state.boundary = before_.boundary;  // without the impulses of masses, which have no inertia here

@@ -9,6 +9,15 @@
 
 namespace talus {
 
+/// Takes away the stress of the particles against jumps of gradients.
+template <int D>
+void drop_jump_stress(Model<D>& m)
+{
+  end_sweeps(m);
+  ParticleColumn<Mat<D>>& column = m.state.particles.jump_stress;
+  column.assign(column.size(), Mat<D>::Zero());
+}
+
 /// An increment is easy where Newton's method takes at most so many iterations; the next one is longer by this factor.
 constexpr int easy_iterations = 6;
 constexpr Real growth = 1.5;
@@ -18,6 +27,8 @@ std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions&
 {
   const Real wanted = m.state.solve.increment > 0 ? std::min(m.state.solve.increment, full) : full;
   Real dt = left <= wanted * (1 + 1e-12) ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver at the end
+  if (!options.keeps_jump_stress)
+    drop_jump_stress(m);
   for (int cuts = 0;; ++cuts) {
     LoadIncrement<D> increment(m, dt);
     if (!increment.is_sound())

@@ -185,7 +185,7 @@ def _trials(options: Options, type_of_rest: str, before: AtRest) -> tuple[str, C
                              "--increments and --steadiness", 2)
         increments = options.increments if options.increments is not None else _INCREMENTS
         return kind, criterion, float(increments), {"type": "static", "increments": increments, "grow": False, "residual": _RESIDUAL,
-                                                    "iterations": _ITERATIONS, "cuts": 0, "unbalanced": 1}
+                                                    "iterations": _ITERATIONS, "cuts": 0, "unbalanced": 1, "keep_jump_stress": False}
     if options.increments is not None or options.steadiness is not None:
         raise SceneError("--increments and --steadiness belong to static trials (--trials static); runs have --duration and --kinetic", 2)
     if not before.gravity > 0 and options.duration is None:
