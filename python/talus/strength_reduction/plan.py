@@ -18,7 +18,7 @@ RUN, STATIC = "run", "static"
 SEEKING = ("geostatic", "static")  # types of stages that end in equilibrium
 _ROWS, _FILES = 100, 10            # of the history and of the particles of a run
 # An increment of a static trial: forces in balance to this share of the loads, in at most so many iterations.  Cutting it in halves would
-# not help, as its loads do not change.  Ground that fails moves on by little: with a growth of 10 % the benchmark ACADS is 2 % too high.
+# not help, as its loads do not change.  With a growth of 10 %, as runs have, the benchmark ACADS is 2 % too high.
 _RESIDUAL, _ITERATIONS, _INCREMENTS, _STATIC_GROWTH = 1e-4, 20, 6, 0.05
 _DAMPING = 0.3
 _KEPT = ("name", "material", "f_bar", "reference")  # keys of a body that takes its particles from another run
