@@ -6,6 +6,8 @@ namespace talus {
 
 /// Of the shear stiffness, that against jumps (docs/theory/statics.md, benchmarks/equilibrium).
 constexpr Real stiffness_of_jumps = 0.1;
+/// Of this, what is left at least in an increment where the material yields, if the stress begins anew in each.
+constexpr Real least_left = 0.25;
 
 namespace {
 
@@ -14,8 +16,9 @@ Real size_of_deviator(const Mat3& of) { return (of - of.trace() / 3 * Mat3::Iden
 }  // namespace
 
 template <int D>
-void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic)
+void JumpForces<D>::set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic, bool keeps_stress)
 {
+  keeps_stress_ = keeps_stress;
   const Mesh<D>& mesh = problem.mesh;
   shear_ = elastic.shear();
   std::vector<Real> filled = elastic.filled(), shear = shear_;
@@ -42,6 +45,11 @@ void JumpForces<D>::find_left(Index c)
   const Mat3 before = unpack(before_.stress[i] / before_.volume[i]), now = unpack(now_.stress[i] / now_.volume[i]);
   const Real elastic = size_of_deviator(before + 2 * shear_[i] / before_.volume[i] * stretch), found = size_of_deviator(now);
   left_[i] = found < elastic ? found / elastic : 1;
+  if (!keeps_stress_) {
+    const Real change = size_of_deviator(R.transpose() * now * R - before),
+               of_elastic = 2 * shear_[i] / before_.volume[i] * size_of_deviator(stretch);
+    left_[i] = 2 * change < of_elastic ? std::max(2 * change / of_elastic, least_left) : 1;  // means over cells differ
+  }
   turned_[i] = R.template topLeftCorner<D, D>();
 }
 
@@ -59,7 +67,7 @@ void JumpForces<D>::take_stress(const Problem<D>& problem, const ParticleStrips<
   spread_least_left(problem);
 }
 
-/// Gives each cell the least rho of the cells with which it has a node.
+/// Gives each cell the least rho of the cells with which it has a node; where the stress begins anew, the mean.
 template <int D>
 void JumpForces<D>::spread_least_left(const Problem<D>& problem)
 {
@@ -67,6 +75,21 @@ void JumpForces<D>::spread_least_left(const Problem<D>& problem)
   if (!problem.subdomain.alone()) {
     cells_.send(left_, Numbers{});
     cells_.take(left_, Numbers{});
+  }
+  if (!keeps_stress_) {
+    std::vector<Real> volume = now_.volume, around(left_.size(), 1);
+    if (!problem.subdomain.alone())
+      cells_.send(volume, Numbers{}), cells_.take(volume, Numbers{});
+    for (const auto& one : jumps_.cells()) {
+      Real all = 0, left = 0;
+      for (const Index n : mesh.cell(one.cell))
+        for (const Index c : mesh.cells_of_node()[n])
+          all += volume[to_size(c)], left += volume[to_size(c)] * left_[to_size(c)];
+      if (all > 0)
+        around[to_size(one.cell)] = left / all;
+    }
+    left_ = around;
+    return;
   }
   std::vector<Real> at_node(to_size(mesh.n_nodes()), 1);
   for (const auto& one : jumps_.cells())
@@ -97,7 +120,7 @@ std::vector<Vec<D>> JumpForces<D>::find(const Problem<D>& problem, std::initiali
       if (part == Part::start)
         stress[c] += before_.in_cell(mesh, one.cell, before_.jump_stress[c]);
       else if (part == Part::empty_cells && now_.volume[c] == 0)
-        stress[c] += share_of_empty * mesh.volume(one.cell) * of_jump_[c];
+        stress[c] += share_of_empty * mesh.volume(one.cell) * (keeps_stress_ ? 1 : left_[c]) * of_jump_[c];
       else if (part == Part::particles && now_.volume[c] > 0)
         stress[c] += now_.in_cell(mesh, one.cell,
                                   left_[c] * turned_[c] * (now_.jump_stress[c] + now_.volume[c] * of_jump_[c]) * turned_[c].transpose());

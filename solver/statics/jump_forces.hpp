@@ -18,11 +18,14 @@ namespace talus {
 /// and where this yields it relaxes as the deviatoric stress does.  The least rho of the cells with which a cell has a node is its own: beside
 /// soil that yields, stronger material would else hold it.  Empty cells beside the surface have a stiffness within the increment,
 /// which supports nodes beyond the surface.
+///
+/// Where particles do not keep q, it begins with zero in each increment, and rho is the mean around the cell of the share of the shear
+/// stiffness that the material has left in it, twice |change of s| / (2 mu |e|), from 1/4 to 1, also for empty cells.
 template <int D>
 class JumpForces {
  public:
-  /// Takes filled cells and their stiffness.  Collective.
-  void set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic);
+  /// Takes filled cells and their stiffness, and whether particles keep q.  Collective.
+  void set_stiffness(const Problem<D>& problem, const ElasticStiffness<D>& elastic, bool keeps_stress);
 
   /// Calls f(cell, volume times stiffness [N m]) for the cells that have one, all as if they were full.
   template <class F>
@@ -55,6 +58,7 @@ class JumpForces {
   std::vector<Real> left_;       ///< by cell: rho
   std::vector<Mat<D>> turned_;   ///< by cell: R
   std::vector<Mat<D>> of_jump_;  ///< by cell: k mu J [Pa]
+  bool keeps_stress_ = true;
   HaloExchange cells_;
 };
 

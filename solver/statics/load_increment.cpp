@@ -11,7 +11,7 @@
 namespace talus {
 
 template <int D>
-LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt) : m_(m), dt_(dt), time_(m.state.clock.time)
+LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt, bool keeps_jump_stress) : m_(m), dt_(dt), time_(m.state.clock.time)
 {
   end_sweeps(m_);
   before_ = m_.state;
@@ -27,7 +27,7 @@ LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt) : m_(m), dt_(dt), time_(m.
   // The columns have particles in the cells of the increment before; a trial without motion sorts them into those where they lie.
   move(std::vector<Real>(unknowns_.size(), 0), Then::locate);
   end_sweeps(m_);
-  set_stiffness();
+  set_stiffness(keeps_jump_stress && m_.problem.columns.jump_stress);
   restore();
 }
 
@@ -55,11 +55,11 @@ bool LoadIncrement<D>::find_forces(ActiveNodes active)
 
 /// The stiffness of the nodes, and that of displacements that averaged gradients do not see, of the particles in the columns.
 template <int D>
-void LoadIncrement<D>::set_stiffness()
+void LoadIncrement<D>::set_stiffness(bool keeps_jump_stress)
 {
   const Problem<D>& problem = m_.problem;
   elastic_ = ElasticStiffness<D>(problem.mesh, m_.state, m_.transfer->averages_gradients());
-  jumps_.set_stiffness(problem, elastic_);
+  jumps_.set_stiffness(problem, elastic_, keeps_jump_stress);
   jumps_.for_each_cell(problem.mesh, [&](Index c, Real stiffness) {
     if (problem.subdomain.alone() || problem.subdomain.owns_cell(c))
       elastic_.support(c, stiffness);

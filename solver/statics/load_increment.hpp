@@ -24,7 +24,7 @@ template <int D>
 class LoadIncrement {
  public:
   /// The particles must be at rest.  Collective.
-  LoadIncrement(Model<D>& m, Real dt);
+  LoadIncrement(Model<D>& m, Real dt, bool keeps_jump_stress);
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
 
@@ -37,7 +37,7 @@ class LoadIncrement {
 
   void restore();
   bool find_forces(ActiveNodes active);
-  void set_stiffness();
+  void set_stiffness(bool keeps_jump_stress);
   std::vector<Vec<D>> displacements();
   using JumpPart = typename JumpForces<D>::Part;
   std::vector<Vec<D>> jump_forces(std::initializer_list<JumpPart> parts);

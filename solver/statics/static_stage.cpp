@@ -30,7 +30,7 @@ std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions&
   if (!options.keeps_jump_stress)
     drop_jump_stress(m);
   for (int cuts = 0;; ++cuts) {
-    LoadIncrement<D> increment(m, dt);
+    LoadIncrement<D> increment(m, dt, options.keeps_jump_stress);
     if (!increment.is_sound())
       return std::nullopt;
     const std::optional<std::string> why = increment.solve(*m.problem.equations, options);

@@ -25,7 +25,7 @@ __all__ = ["FactorOfSafety", "factor_of_safety", "folder_of_search", "search_in"
 
 def factor_of_safety(scene: Scene, *, set: Mapping[str, Any] | None = None, out: str | os.PathLike[str] | None = None, low: float = 0.5,
                      high: float = 3.0, width: float = 0.02, trials: str | None = None, duration: float | None = None,
-                     damping: float | None = None, increments: int | None = None, growth: float | None = None, kinetic: float | None = None,
+                     damping: float | None = None, increments: int | None = None, growth: float = 0.1, kinetic: float | None = None,
                      steadiness: float | None = None, share: float = 0.99, bodies: Iterable[str] = (), jobs: int | None = None,
                      threads: int | None = None, launcher: str | None = None, quick: bool = False, pictures: bool = True,
                      tell: Callable[[str], object] | None = None, program: str | os.PathLike[str] | None = None) -> FactorOfSafety:
@@ -39,8 +39,7 @@ def factor_of_safety(scene: Scene, *, set: Mapping[str, Any] | None = None, out:
     duration    of a run [s]; default 3 sqrt(height / gravity), or 20 wave transit times if that is longer
     damping     local damping of a run; default 0.3
     increments  of a static trial; default 6
-    growth      displacement in the second half of a trial over that in the first half, above which it fails; default 0.1, of static
-                trials 0.05
+    growth      displacement in the second half of a trial over that in the first half, above which it fails
     kinetic     of a run: kinetic energy at its end over the peak, above which it fails; default 5e-4
     steadiness  of a static trial: displacement in its last third over the middle third, above which it fails; default 0.5
     share       the displacement that this share of the mass does not exceed is measured

@@ -24,8 +24,7 @@ def add_fos(commands: Any) -> None:
                                 ("width", 0.02, "how close holding and failing factors come; default 0.02"),
                                 ("duration", None, "of a run [s]; default 3 sqrt(height / gravity), or 20 passes of waves if longer"),
                                 ("damping", None, "local damping of a run; default 0.3"),
-                                ("growth", None, "moved in the second half of a trial over the first, above which it fails; default 0.1, of "
-                                                 "static trials 0.05"),
+                                ("growth", 0.1, "moved in the second half of a trial over the first, above which it fails; default 0.1"),
                                 ("kinetic", None, "of a run: kinetic energy at the end over its peak, above which it fails; default 5e-4"),
                                 ("steadiness", None, "of a static trial: moved in its last third over the middle third, above which it "
                                                      "fails; default 0.5"),
