@@ -64,12 +64,12 @@ void JumpForces<D>::take_stress(const Problem<D>& problem, const ParticleStrips<
     find_left(one.cell);
     of_jump_[to_size(one.cell)] = one.modulus * one.jump;
   }
-  spread_least_left(problem);
+  take_left_of_neighbours(problem);
 }
 
 /// Gives each cell the least rho of the cells with which it has a node; where the stress begins anew, the mean.
 template <int D>
-void JumpForces<D>::spread_least_left(const Problem<D>& problem)
+void JumpForces<D>::take_left_of_neighbours(const Problem<D>& problem)
 {
   const Mesh<D>& mesh = problem.mesh;
   if (!problem.subdomain.alone()) {

@@ -50,7 +50,7 @@ class JumpForces {
 
  private:
   void find_left(Index c);
-  void spread_least_left(const Problem<D>& problem);
+  void take_left_of_neighbours(const Problem<D>& problem);
 
   GradientJumps<D> jumps_;
   std::vector<Real> shear_;  ///< by cell: volume times shear modulus of its particles at the beginning [N m]

@@ -23,7 +23,7 @@ namespace talus {
 template <int D>
 class LoadIncrement {
  public:
-  /// The particles must be at rest.  Collective.
+  /// The particles must be at rest; `keeps_jump_stress` as in EquilibriumOptions.  Collective.
   LoadIncrement(Model<D>& m, Real dt, bool keeps_jump_stress);
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
