@@ -16,7 +16,7 @@ template <int D>
 void find_jump_forces(Model<D>& m)
 {
   if (m.work.jump_stress)
-    m.work.jump_stress->find(m.problem.mesh, m.problem.subdomain, *m.work.strips);
+    m.work.jump_stress->find(m.problem.mesh, m.problem.subdomain, *m.work.strips, m.state.empty_cells);
 }
 
 /// Adds them to those of the own nodes.

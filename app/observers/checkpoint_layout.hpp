@@ -6,7 +6,7 @@
 namespace talus {
 
 /// The version of the format; it increases with every change of the contents.
-inline constexpr std::int64_t checkpoint_format = 13;
+inline constexpr std::int64_t checkpoint_format = 14;
 
 inline std::string history_of(std::size_t body) { return below("laws/history", body); }
 

@@ -123,6 +123,7 @@ void check_sizes(const State<D>& state, const std::vector<bool>& columns, std::i
   const KnownIds known_ids{limits.particles, state.resampling.splits};
   must(within(particles.cell, limits.cells) && std::ranges::all_of(particles.id, [&](std::int64_t id) { return known_ids.has(id); }),
        "particles");
+  must(state.empty_cells.fits(limits.cells), "cells without particles");
 }
 
 /// Sets the laws of bodies that change in a stage.
@@ -271,6 +272,7 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& saved) const
       load(arrays, "stage", saved.stage);
       load(arrays, "energy", saved.energy);
       load(arrays, "flow", saved.flow);
+      load(arrays, "empty_cells", saved.empty_cells);
       take_laws_of(saved.stage, saved.laws, saved.materials);
       recall_slice(arrays, 0, 1, saved.bodies, saved.materials, saved.particles);
       std::vector<std::string> faults;

@@ -99,6 +99,7 @@ struct KeptBodies {
   StageState stage;
   EnergyLedger energy;
   FlowLedger flow;
+  EmptyCellStress<D> empty_cells;
   std::vector<std::vector<Material>> laws;  ///< laws of each stage, to be set before reading
 };
 

@@ -32,9 +32,10 @@ std::vector<SharedArray> arrays_of(const Particles<D>& particles, const std::vec
   return arrays;
 }
 
-/// All other content of a checkpoint.
+/// All other content of a checkpoint.  Stress in empty cells is that of all ranks.
 template <int D>
-KeptArrays rest_of(const State<D>& state, const std::vector<Body>& in_file, const RunIdentity& identity, const Recorder<D>& recorder)
+KeptArrays rest_of(const State<D>& state, const EmptyCellStress<D>& empty_cells, const std::vector<Body>& in_file,
+                   const RunIdentity& identity, const Recorder<D>& recorder)
 {
   KeptArrays rest;
   save(rest, "format", checkpoint_format);
@@ -43,6 +44,8 @@ KeptArrays rest_of(const State<D>& state, const std::vector<Body>& in_file, cons
     using Part = std::decay_t<decltype(part)>;
     if constexpr (std::is_same_v<Part, std::vector<Body>>)
       save(rest, name, in_file);
+    else if constexpr (std::is_same_v<Part, EmptyCellStress<D>>)
+      save(rest, name, empty_cells);
     else if constexpr (!is_of_particles<Part>)
       save(rest, name, part);
   });
@@ -152,7 +155,8 @@ void Checkpoints<D>::begin(const RunView<D>& view, Recorder<D>& recorder)
       KeptArrays rest;
     };
     // A shared pointer, because work that can be stored has to be copyable.
-    const auto kept = std::make_shared<const Kept>(Kept{std::move(*copy), rest_of(view.state, view.state.bodies, identity_, recorder)});
+    const auto kept = std::make_shared<const Kept>(
+        Kept{std::move(*copy), rest_of(view.state, view.state.empty_cells, view.state.bodies, identity_, recorder)});
     task_.start([kept, flush, file, clock, folder = folder_, keep = spec_.keep] {
       flush();
       const auto& [bodies, materials, particles] = kept->copy;
@@ -168,8 +172,9 @@ void Checkpoints<D>::begin(const RunView<D>& view, Recorder<D>& recorder)
   } else {
     view.fetch_particles();
     ranks.together([&] { flush(); });
+    const EmptyCellStress<D> empty_cells = view.state.empty_cells.of_all_ranks(ranks, view.problem.subdomain);
     on_slices(view, [&](const State<D>& slice, const std::vector<Body>& in_file, const Slice& rows) {
-      const KeptArrays rest = rest_of(slice, in_file, identity_, recorder);
+      const KeptArrays rest = rest_of(slice, empty_cells, in_file, identity_, recorder);
       write_arrays(ranks, file, arrays_of(slice.particles, slice.materials, slice.bodies, in_file, rows),
                    [&](ArrayWriter& writer) { rest.write_to(writer); });
     });

@@ -1,5 +1,7 @@
 #include "app/setup/seed.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -12,6 +14,7 @@
 #include "core/parallel/threads.hpp"
 #include "io/system/memory.hpp"
 #include "materials/interface/varied_law.hpp"
+#include "mesh/digest.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/quadrature.hpp"
 
@@ -115,6 +118,10 @@ class Seeder {
   {
     seeds_.water_flows_on = carry_columns(scene_, initial.there, std::span<const TakenParticles>(taken_), seeds_.bodies, seeds_.materials,
                                           errors_, seeds_.particles);
+    const auto has_its_law = [&](const TakenParticles& taken) { return taken.law == seeds_.materials[taken.body].law().name(); };
+    if (!initial.there.empty_cells.empty() && initial.origin.mesh_digest == fmt::format("{:016x}", digest(mesh_)) &&
+        initial.there.empty_cells.fits(mesh_.n_cells()) && std::ranges::all_of(taken_, has_its_law))
+      seeds_.empty_cells = initial.there.empty_cells;
     for (const auto& [body, law, rows] : taken_) {
       constexpr Real worth_a_word = 0.01;
       const Body& here = seeds_.bodies[body];

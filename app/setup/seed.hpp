@@ -17,6 +17,7 @@ struct Seeds {
   Real lag = 0;                 ///< by how much the velocities of another run are behind its time, Clock::lag [s]
   Real largest_before = 0;      ///< largest term of the energy of that run [J]
   bool water_flows_on = false;  ///< with the pressures that it had there
+  EmptyCellStress<D> empty_cells;
 };
 
 /// Cells [begin, end) that this rank fills: an even share of the blocks along the curve.

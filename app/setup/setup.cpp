@@ -283,6 +283,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.state.clock.lag = seeds.lag;
   setup.state.energy.largest_before = seeds.largest_before;
   setup.state.flow.begun = seeds.water_flows_on;
+  setup.state.empty_cells = std::move(seeds.empty_cells);
   const CellOccupancy<D> has_particles(mesh, setup.state.particles, setup.state.bodies, ranks, [](const std::string&) { return true; });
   const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });

@@ -74,6 +74,8 @@ void renew(const std::vector<Renewal>& bodies, std::span<const Material> laws, S
     if (!same_law || !varies_alike(before.law(), material.law()))
       for (const ParameterTrouble& one : set_parameters_in_space(particles, ranks, material))
         throw RunError(fmt::format("body \"{}\" cannot become {}: {}: {}", body.name, material.name, to_string(one.where), one.message));
+    if (!same_law)
+      state.empty_cells.clear();  // of all bodies, as cells beside several have one stress
     if (!same_law && !particles.jump_stress.empty())
       for (Index p = body.begin; p < body.end; ++p)
         particles.jump_stress.set(static_cast<std::size_t>(p), Mat<D>::Zero());

@@ -18,6 +18,9 @@ template <class T>
 inline constexpr bool is_vector = false;
 template <class T, class Allocator>
 inline constexpr bool is_vector<std::vector<T, Allocator>> = true;
+/// Vectors that are stored as one array.
+template <class T>
+inline constexpr bool is_row_of_numbers = std::is_same_v<T, std::vector<Real>> || std::is_same_v<T, std::vector<std::int64_t>>;
 template <class T>
 inline constexpr bool is_variant = false;
 template <class... T>
@@ -48,8 +51,8 @@ void save(Writer& file, const std::string& path, const T& value)
         value);
   } else if constexpr (std::is_same_v<T, std::string>) {
     file.write(path, std::string_view(value));
-  } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
-    file.write(path, std::span<const Real>(value));
+  } else if constexpr (is_row_of_numbers<T>) {
+    file.write(path, std::span<const typename T::value_type>(value));
   } else if constexpr (is_vector<T>) {
     const auto count = static_cast<std::int64_t>(value.size());
     file.write(below(path, "count"), std::span(&count, 1));
@@ -77,8 +80,8 @@ void load(const ArrayReader& file, const std::string& path, T& value)
         value);
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = file.text(path);
-  } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
-    value = file.read<Real>(path);
+  } else if constexpr (is_row_of_numbers<T>) {
+    value = file.read<typename T::value_type>(path);
   } else if constexpr (is_vector<T>) {
     std::int64_t count = 0;
     load(file, below(path, "count"), count);

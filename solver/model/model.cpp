@@ -141,8 +141,10 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
                      .side = problem.rigid.any_sheet(),
                      .reference = reference,
                      .domain = any_resampled(problem.resampling)};
-  if (!may_have_jump_stress(m))
+  if (!may_have_jump_stress(m)) {
     state.particles.jump_stress = {};
+    state.empty_cells.clear();
+  }
   fill_columns(problem.columns, state.particles);
   const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))

@@ -15,6 +15,7 @@
 #include "solver/flow/flow.hpp"
 #include "solver/rigid/rigid_body.hpp"
 #include "solver/state/ledger.hpp"
+#include "solver/stress/empty_cell_stress.hpp"
 
 namespace talus {
 
@@ -141,18 +142,32 @@ struct State {
   BoundaryConditions<D> boundary;
   std::vector<ContactSums<D>> contacts;  ///< impulse and work of each law of contact, then of each cut, since the start of the run
   std::vector<RigidState<D>> rigid;      ///< of each rigid body
+  EmptyCellStress<D> empty_cells;        ///< what stages without inertia have left there
   std::vector<Body> bodies;
   std::vector<Material> materials;  ///< one for each body, with the same rows
   Particles<D> particles;
 
   static constexpr auto parts()
   {
-    return std::tuple{saved("clock", &State::clock),     saved("stage", &State::stage),       saved("energy", &State::energy),
-                      saved("mass", &State::mass),       saved("momentum", &State::momentum), saved("watched", &State::monitor),
-                      saved("flow", &State::flow),       saved("solve", &State::solve),       saved("resampling", &State::resampling),
-                      saved("timings", &State::timings), saved("residual", &State::residual), saved("crossing", &State::crossing),
-                      saved("walls", &State::boundary),  saved("contacts", &State::contacts), saved("rigid", &State::rigid),
-                      saved("bodies", &State::bodies),   saved("laws", &State::materials),    saved("particles", &State::particles)};
+    return std::tuple{saved("clock", &State::clock),
+                      saved("stage", &State::stage),
+                      saved("energy", &State::energy),
+                      saved("mass", &State::mass),
+                      saved("momentum", &State::momentum),
+                      saved("watched", &State::monitor),
+                      saved("flow", &State::flow),
+                      saved("solve", &State::solve),
+                      saved("resampling", &State::resampling),
+                      saved("timings", &State::timings),
+                      saved("residual", &State::residual),
+                      saved("crossing", &State::crossing),
+                      saved("walls", &State::boundary),
+                      saved("contacts", &State::contacts),
+                      saved("rigid", &State::rigid),
+                      saved("bodies", &State::bodies),
+                      saved("laws", &State::materials),
+                      saved("particles", &State::particles),
+                      saved("empty_cells", &State::empty_cells)};
   }
 };
 

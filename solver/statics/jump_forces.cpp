@@ -54,6 +54,14 @@ void JumpForces<D>::find_left(Index c)
 }
 
 template <int D>
+void JumpForces<D>::take_start(const Problem<D>& problem, const ParticleStrips<D>& strips, const EmptyCellStress<D>& of_empty)
+{
+  before_ = JumpSums<D>(problem.mesh, strips, true);
+  of_empty_.assign(before_.volume.size(), Mat<D>::Zero());
+  of_empty.for_each(problem.subdomain, [&](Index c, const Mat<D>& q) { of_empty_[to_size(c)] = q; });
+}
+
+template <int D>
 void JumpForces<D>::take_stress(const Problem<D>& problem, const ParticleStrips<D>& strips)
 {
   now_ = JumpSums<D>(problem.mesh, strips, true);
@@ -61,7 +69,13 @@ void JumpForces<D>::take_stress(const Problem<D>& problem, const ParticleStrips<
   turned_.assign(left_.size(), Mat<D>::Identity());
   of_jump_.assign(left_.size(), Mat<D>::Zero());
   for (const auto& one : jumps_.cells()) {
-    find_left(one.cell);
+    if (!is_empty(one.cell)) {
+      find_left(one.cell);
+    } else {
+      Mat3 f = Mat3::Identity();
+      f.template topLeftCorner<D, D>() += one.gradient;
+      turned_[to_size(one.cell)] = polar_rotation(f).template topLeftCorner<D, D>();
+    }
     of_jump_[to_size(one.cell)] = one.modulus * one.jump;
   }
   take_left_of_neighbours(problem);
@@ -100,35 +114,58 @@ void JumpForces<D>::take_left_of_neighbours(const Problem<D>& problem)
       left_[to_size(one.cell)] = std::min(left_[to_size(one.cell)], at_node[to_size(n)]);
 }
 
+/// Gives the cells of other ranks what these have found.
 template <int D>
-void JumpForces<D>::store(ParticleStrips<D>& strips) const
+void JumpForces<D>::exchange(const Problem<D>& problem, std::vector<Mat<D>>& by_cell)
 {
-  for_each_in_cells(strips, [&](Index cell, const StripColumns<D>& columns, std::size_t p) {
-    if (const std::size_t c = to_size(cell); columns.jump_stress)
-      columns.jump_stress.set(p, left_[c] * turned_[c] * (columns.jump_stress.of(p) + of_jump_[c]) * turned_[c].transpose());
-  });
+  if (problem.subdomain.alone())
+    return;
+  cells_.send(by_cell, Numbers{});
+  cells_.take(by_cell, Numbers{});
 }
 
 template <int D>
-std::vector<Vec<D>> JumpForces<D>::find(const Problem<D>& problem, std::initializer_list<Part> parts)
+void JumpForces<D>::store(const Problem<D>& problem, ParticleStrips<D>& strips, EmptyCellStress<D>& of_empty)
+{
+  const auto left = [&](std::size_t c, const Mat<D>& q) {
+    return Mat<D>(left_[c] * turned_[c] * (q + of_jump_[c]) * turned_[c].transpose());
+  };
+  for_each_in_cells(strips, [&](Index cell, const StripColumns<D>& columns, std::size_t p) {
+    columns.jump_stress.set(p, left(to_size(cell), columns.jump_stress.of(p)));
+  });
+  std::vector<Mat<D>> stress(left_.size(), Mat<D>::Zero());
+  for (const auto& one : jumps_.cells())
+    if (const auto c = to_size(one.cell); is_empty(one.cell))
+      stress[c] = left(c, of_empty_[c]);
+  exchange(problem, stress);
+  of_empty.clear();
+  for (Index c = 0; c < problem.mesh.n_cells(); ++c)
+    if (!stress[to_size(c)].isZero(0))
+      of_empty.add(problem.subdomain.alone() ? c : problem.subdomain.whole_cell(c), stress[to_size(c)]);
+}
+
+/// q of a cell, times its volume.
+template <int D>
+Mat<D> JumpForces<D>::stress_in(const Mesh<D>& mesh, Index cell, At at) const
+{
+  const auto c = to_size(cell);
+  const Real empty = share_of_empty * mesh.volume(cell);
+  if (at == At::start)
+    return is_empty(cell) ? Mat<D>(empty * of_empty_[c]) : before_.in_cell(mesh, cell, before_.jump_stress[c]);
+  const Real left = is_empty(cell) && keeps_stress_ && at == At::end ? 1 : left_[c];
+  const Mat<D> q = is_empty(cell) ? Mat<D>(empty * (of_empty_[c] + of_jump_[c]))
+                                  : now_.in_cell(mesh, cell, now_.jump_stress[c] + now_.volume[c] * of_jump_[c]);
+  return left * turned_[c] * q * turned_[c].transpose();
+}
+
+template <int D>
+std::vector<Vec<D>> JumpForces<D>::find(const Problem<D>& problem, At at)
 {
   const Mesh<D>& mesh = problem.mesh;
   std::vector<Mat<D>> stress(to_size(mesh.n_cells()), Mat<D>::Zero());
-  for (const Part part : parts)
-    for (const auto& one : jumps_.cells()) {
-      const auto c = to_size(one.cell);
-      if (part == Part::start)
-        stress[c] += before_.in_cell(mesh, one.cell, before_.jump_stress[c]);
-      else if (part == Part::empty_cells && now_.volume[c] == 0)
-        stress[c] += share_of_empty * mesh.volume(one.cell) * (keeps_stress_ ? 1 : left_[c]) * of_jump_[c];
-      else if (part == Part::particles && now_.volume[c] > 0)
-        stress[c] += now_.in_cell(mesh, one.cell,
-                                  left_[c] * turned_[c] * (now_.jump_stress[c] + now_.volume[c] * of_jump_[c]) * turned_[c].transpose());
-    }
-  if (!problem.subdomain.alone()) {
-    cells_.send(stress, Numbers{});
-    cells_.take(stress, Numbers{});
-  }
+  for (const auto& one : jumps_.cells())
+    stress[to_size(one.cell)] = stress_in(mesh, one.cell, at);
+  exchange(problem, stress);
   std::vector<Vec<D>> force(to_size(mesh.n_nodes()), Vec<D>::Zero());
   jumps_.add_forces(mesh, stress, force);
   return force;

@@ -69,19 +69,19 @@ void LoadIncrement<D>::set_stiffness(bool keeps_jump_stress)
 
 /// Forces against displacements that averaged gradients do not see, at nodes with a motion of their own [N].
 template <int D>
-std::vector<Vec<D>> LoadIncrement<D>::jump_forces(std::initializer_list<JumpPart> parts)
+std::vector<Vec<D>> LoadIncrement<D>::jump_forces(At at)
 {
-  std::vector<Vec<D>> forces = jumps_.find(m_.problem, parts);
+  std::vector<Vec<D>> forces = jumps_.find(m_.problem, at);
   m_.work.fields.front().small_mass_nodes.give(
       m_.problem.own, [](Index, const Vec<D>& force) { return force; }, forces);
   return forces;
 }
 
-/// Those of the stress that particles keep: none where the column is missing.
+/// Those that a step has: none where particles have no stress against jumps.
 template <int D>
-std::vector<Vec<D>> LoadIncrement<D>::kept_jump_forces(JumpPart part)
+std::vector<Vec<D>> LoadIncrement<D>::jump_forces_in_steps(At at)
 {
-  return m_.problem.columns.jump_stress ? jump_forces({part}) : std::vector<Vec<D>>(to_size(m_.problem.mesh.n_nodes()), Vec<D>::Zero());
+  return m_.problem.columns.jump_stress ? jump_forces(at) : std::vector<Vec<D>>(to_size(m_.problem.mesh.n_nodes()), Vec<D>::Zero());
 }
 
 /// Which changes of displacement the conditions leave free, as they were in the last trial.
@@ -167,11 +167,11 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   find_renewed_bodies(m_);
   m_.transfer->nodes_to_particles(m_, kick, dt_, between_parts(m_, dt_));
   if (then == Then::locate)
-    jumps_.take_start(m_.problem.mesh, *work.strips);
+    jumps_.take_start(m_.problem, *work.strips, m_.state.empty_cells);
   else if (then == Then::forces)
     jumps_.take_stress(m_.problem, *work.strips);
-  else
-    jumps_.store(*work.strips);
+  else if (m_.problem.columns.jump_stress)
+    jumps_.store(m_.problem, *work.strips, m_.state.empty_cells);
   m_.state.boundary = before_.boundary;  // without the impulses of masses, which have no inertia here
   work.sums.beyond_nodes.clear();
   work.errors.take(m_.problem.ranks->min(work.errors.word()));
@@ -185,7 +185,7 @@ bool LoadIncrement<D>::move(std::span<const Real> x, Then then)
   work.sums.on_mesh.clear();
   if (!find_forces(ActiveNodes::as_before))
     return give_up();
-  jump_ = jump_forces({JumpPart::particles, JumpPart::empty_cells});
+  jump_ = jump_forces(At::end);
   return true;
 }
 
@@ -227,11 +227,36 @@ Real LoadIncrement<D>::norm(std::span<const Real> f) const
   return std::sqrt(squares.value());
 }
 
+/// The residual where nothing moves, and the size of the loads: weight, reactions and what is out of balance then.
+template <int D>
+bool LoadIncrement<D>::find_loads(std::span<Real> f)
+{
+  if (!find_residual(std::vector<Real>(f.size(), 0), f))
+    return false;
+  std::vector<Real> loads(f.size());
+  loads_ = norm(f);
+  for (const std::vector<Vec<D>>* all : {&reaction_, &weight_}) {
+    for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
+      Eigen::Map<Vec<D>>(loads.data() + k * D) = (*all)[k];
+    loads_ = std::max(loads_, norm(loads));
+  }
+  return true;
+}
+
+template <int D>
+std::optional<Real> LoadIncrement<D>::imbalance_at_start()
+{
+  std::vector<Real> f(unknowns_.size());
+  const bool is_found = find_loads(f);
+  restore();
+  return is_found ? std::optional(loads_ > 0 ? norm(f) / loads_ : 0) : std::nullopt;
+}
+
 template <int D>
 std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, const EquilibriumOptions& options)
 {
   std::vector<Real> x(unknowns_.size(), 0), f(x.size());
-  if (!find_residual(x, f)) {
+  if (!find_loads(f)) {
     restore();
     return "the state that it begins with has particles that cannot be placed";
   }
@@ -241,18 +266,10 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, cons
     restore();
     return "no boundary holds the bodies: give one of type fixed, roller or friction where they touch it";
   }
-  // The size of the loads: weight, reactions and what is out of balance in the beginning.
-  std::vector<Real> loads(x.size());
-  Real size = norm(f);
-  for (const std::vector<Vec<D>>* all : {&reaction_, &weight_}) {
-    for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
-      Eigen::Map<Vec<D>>(loads.data() + k * D) = (*all)[k];
-    size = std::max(size, norm(loads));
-  }
   NonlinearResult result;
   result.converged = true;
-  if (size > 0) {
-    force_ = size;
+  if (loads_ > 0) {
+    force_ = loads_;
     const NonlinearEquations equations{.unknowns = x.size(),
                                        .block = D,
                                        .residual = [this](std::span<const Real> at, std::span<Real> to) { return find_residual(at, to); },

@@ -28,9 +28,14 @@ class LoadIncrement {
   /// False where the state that it begins with has particles that cannot take part; their errors are in the workspace.
   bool is_sound() const noexcept { return sound_; }
 
+  /// How far from balance the particles are where they lie, over the loads [-]; nothing where they cannot be placed.  The model stays as it
+  /// is.  Collective.
+  std::optional<Real> imbalance_at_start();
   /// Nothing where it was solved: the model is then at its end, with its balances.  Otherwise why not, and the model as it was.
   /// Collective.
   std::optional<std::string> solve(NonlinearSolver& solver, const EquilibriumOptions& options);
+  /// Ends it without moving the particles.  Collective.
+  void skip() { accept(std::vector<Real>(unknowns_.size(), 0)); }
 
  private:
   enum class Then : std::uint8_t { forces, stay, locate };  ///< locate: stay, for the cells of the particles and their stress
@@ -39,16 +44,17 @@ class LoadIncrement {
   bool find_forces(ActiveNodes active);
   void set_stiffness(bool keeps_jump_stress);
   std::vector<Vec<D>> displacements();
-  using JumpPart = typename JumpForces<D>::Part;
-  std::vector<Vec<D>> jump_forces(std::initializer_list<JumpPart> parts);
-  std::vector<Vec<D>> kept_jump_forces(JumpPart part);
+  using At = typename JumpForces<D>::At;
+  std::vector<Vec<D>> jump_forces(At at);
+  std::vector<Vec<D>> jump_forces_in_steps(At at);
   void set_constraints();
   void add_stiffness(const std::function<void(std::int64_t, std::int64_t, Real)>& add) const;
   bool move(std::span<const Real> x, Then then);
   bool find_residual(std::span<const Real> x, std::span<Real> f);
+  bool find_loads(std::span<Real> f);
   void accept(std::span<const Real> x);
-  /// Of the forces of jumps in the last trial those that no particle keeps.
-  Vec<D> passing_jump(Index n) const noexcept { return jump_[to_size(n)] - jump_after_[to_size(n)]; }
+  /// Of the forces of jumps in the last trial those that pass with it.
+  Vec<D> passing_jump(Index n) const noexcept { return jump_[to_size(n)] - jump_behind_[to_size(n)]; }
   Vec<D> left_over(std::span<const Real> f, std::size_t k) const;
   void find_net_acceleration(std::span<const Real> f);
   void record_work(std::span<const Real> x);
@@ -73,9 +79,10 @@ class LoadIncrement {
   ElasticStiffness<D> elastic_;
   std::vector<typename ElasticStiffness<D>::OfNode> stiffness_;  ///< of each node with unknowns, s above
   JumpForces<D> jumps_;
-  std::vector<Vec<D>> jump_;        ///< by node: their forces in the last trial [N]
-  std::vector<Vec<D>> jump_after_;  ///< by node: those that steps have at its end [N]
-  Real force_ = 1;                  ///< unit of residuals [N]
+  std::vector<Vec<D>> jump_;         ///< by node: their forces in the last trial [N]
+  std::vector<Vec<D>> jump_behind_;  ///< by node: those that steps behind it have [N]
+  Real force_ = 1;                   ///< unit of residuals [N]
+  Real loads_ = 0;                   ///< size of the loads [N]
   // Of each node with unknowns.
   std::vector<Mat<D>> free_;               ///< changes of displacement that its conditions leave free
   std::vector<Vec<D>> reaction_, weight_;  ///< in the last trial [N]

@@ -6,8 +6,8 @@
 
 namespace talus {
 
-/// What is out of balance at a node in the last trial [N], without the forces of jumps that no particle keeps.  A boundary takes up a part of
-/// these by its reaction.
+/// What is out of balance at a node in the last trial [N], without forces of jumps that pass with it.  A boundary takes up a part of these by
+/// its reaction.
 template <int D>
 Vec<D> LoadIncrement<D>::left_over(std::span<const Real> f, std::size_t k) const
 {
@@ -23,7 +23,7 @@ void LoadIncrement<D>::record_work(std::span<const Real> x)
   const Vec<D> gravity = m_.problem.loads.gravity(time_, ramp);
   nodes().kick = dt_ / 2;
   add_work(m_.problem.loads, time_, ramp, m_.problem.own, nodes(), m_.work.sums.work_on_mesh);
-  const std::vector<Vec<D>> jump_before = kept_jump_forces(JumpPart::start);
+  const std::vector<Vec<D>> jump_before = jump_forces_in_steps(At::start);
   for (std::size_t k = 0; k < unknowns_.node.size(); ++k) {
     const auto n = to_size(unknowns_.node[k]);
     NodeWork<D> of_node;
@@ -32,7 +32,7 @@ void LoadIncrement<D>::record_work(std::span<const Real> x)
     const Vec<D> out_of_balance = nodes().sum[n].force + weight + jump_before[n], free = free_[k] * out_of_balance;
     of_node.damping = -free.dot(u) / 2;
     m_.work.sums.nodes.add(of_node);
-    m_.work.sums.stress_at_nodes.add((jump_before[n] + jump_after_[n]).dot(u) / 2);
+    m_.work.sums.stress_at_nodes.add((jump_before[n] + jump_behind_[n]).dot(u) / 2);
     m_.work.sums.at_nodes.add({.moved = (free - out_of_balance).dot(u) / 2});
     if (!m_.problem.loads.on_surfaces.empty())
       m_.work.sums.work_on_mesh.add(surface_work(nodes(), unknowns_.node[k]));
@@ -56,8 +56,8 @@ void LoadIncrement<D>::record_particle_loads()
   }
 }
 
-/// The accelerations that the forces of the last trial would give, without those that move no particle and without forces of jumps that no
-/// particle keeps.
+/// The accelerations that the forces of the last trial would give, without those that move no particle and without forces of jumps that
+/// pass with it.
 template <int D>
 void LoadIncrement<D>::find_net_acceleration(std::span<const Real> f)
 {
@@ -79,7 +79,7 @@ void LoadIncrement<D>::accept(std::span<const Real> x)
   std::vector<Real> f(x.size());
   force_ = 1;
   find_residual(x, f);
-  jump_after_ = kept_jump_forces(JumpPart::particles);
+  jump_behind_ = jump_forces_in_steps(At::behind);
   const std::vector<Mat<D>> free_before = free_;
   set_constraints();
   StepSums<D>& sums = m_.work.sums;

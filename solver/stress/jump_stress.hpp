@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "solver/halo/halo_exchange.hpp"
+#include "solver/stress/empty_cell_stress.hpp"
 #include "solver/stress/gradient_jumps.hpp"
 #include "solver/strips/strips_in_cells.hpp"
 
@@ -62,7 +63,7 @@ struct JumpSums {
 };
 
 /// In steps the stress q that stages without inertia have left, see JumpForces, stays what it is.  Its forces keep the balance that these
-/// stages have found.
+/// stages have found.  A cell that had no particles loses its stress when it gets some, or is not beside the surface any more.
 template <int D>
 class JumpStress {
  public:
@@ -72,8 +73,8 @@ class JumpStress {
       cells_ = copies_of_cells(ranks, subdomain, MessageTag::cells, mesh.n_cells());
   }
 
-  /// Finds the forces at the nodes [N], of the particles in strips.  Collective.
-  void find(const Mesh<D>& mesh, const Subdomain& subdomain, const ParticleStrips<D>& strips)
+  /// Finds the forces at the nodes [N], of the particles in strips and of empty cells.  Collective.
+  void find(const Mesh<D>& mesh, const Subdomain& subdomain, const ParticleStrips<D>& strips, EmptyCellStress<D>& of_empty)
   {
     JumpSums<D> sums(mesh, strips, false);
     for (Index c = 0; c < mesh.n_cells(); ++c)
@@ -82,8 +83,16 @@ class JumpStress {
       cells_.send(sums.volume, Numbers{}), cells_.take(sums.volume, Numbers{});
       cells_.send(sums.jump_stress, Numbers{}), cells_.take(sums.jump_stress, Numbers{});
     }
+    GradientJumps<D> jumps(mesh, sums.volume, sums.volume);
+    if (!of_empty.empty()) {
+      std::vector<std::uint8_t> is_beside(sums.volume.size(), 0);
+      for (const auto& one : jumps.cells())
+        is_beside[to_size(one.cell)] = sums.volume[to_size(one.cell)] > 0 ? 0 : 1;
+      of_empty.keep_if(subdomain, [&](Index c) { return is_beside[to_size(c)] != 0; });
+      of_empty.for_each(subdomain, [&](Index c, const Mat<D>& q) { sums.jump_stress[to_size(c)] = share_of_empty * mesh.volume(c) * q; });
+    }
     force_.assign(to_size(mesh.n_nodes()), Vec<D>::Zero());
-    GradientJumps<D>(mesh, sums.volume, sums.volume).add_forces(mesh, sums.jump_stress, force_);
+    jumps.add_forces(mesh, sums.jump_stress, force_);
   }
   const std::vector<Vec<D>>& forces() const noexcept { return force_; }  ///< by node
 
