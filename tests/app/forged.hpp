@@ -67,12 +67,12 @@ inline void forge_text(const std::filesystem::path& file, const std::string& at,
   });
   EXPECT_TRUE(found) << at;
 }
-/// No rows in arrays of the particles: in that one, or in all of them.
+/// No rows in that array, or in "all" of those of the particles.
 inline void forge_empty(const std::filesystem::path& file, const std::string& which)
 {
   bool found = false;
   forge(file, [&](const std::string& path, auto& values) {
-    if (path.starts_with("particles/") && (which == "all" || path == which)) {
+    if (path == which || (path.starts_with("particles/") && which == "all")) {
       values.clear();
       found = true;
     }

@@ -170,14 +170,18 @@ TEST_F(Checkpoint, ThatNoRunCanHaveWrittenIsRefused)
                                                                                    {"particles/cell", 72},
                                                                                    {"particles/cell", -1},
                                                                                    {"particles/id", 100000},
-                                                                                   {"recorder/history_state/followed/0", 100000},
-                                                                                   {"recorder/history_state/followed/0", -1},
-                                                                                   {"recorder/history_state/followed/count", 0},
+                                                                                   {"recorder/history_state/followed", 100000},
+                                                                                   {"recorder/history_state/followed", -1},
                                                                                    {"recorder/history_state/impulse/count", 0}}) {
     const Outcome outcome = refused_with(at, value);
     EXPECT_EQ(outcome.code, 3) << at << outcome.err;
     EXPECT_NE(outcome.err.find("do not fit the scene"), std::string::npos) << at << " " << outcome.err;
   }
+  fs::copy_file(saved[1], file, fs::copy_options::overwrite_existing);
+  forge_empty(file, "recorder/history_state/followed");
+  const Outcome without_points = talus("run --quiet --out forged --resume forged.h5");
+  EXPECT_EQ(without_points.code, 3) << without_points.err;
+  EXPECT_THAT(without_points.err, HasSubstr("do not fit the scene"));
   for (const std::int64_t count : {std::int64_t{-1}, std::int64_t{1} << 60}) {
     const Outcome outcome = refused_with("recorder/files/count", count);
     EXPECT_EQ(outcome.code, 3) << outcome.err;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/app/forged.hpp"
 #include "tests/app/program.hpp"
+#include "tests/app/same_state.hpp"
 
 namespace talus::static_stage_test {
 namespace {
@@ -47,8 +49,15 @@ TEST_F(StaticStage, FindsTheColumnUnderItsWeight)
   const Outcome run = talus("run column.yaml --out run");
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_NEAR(-last(history("run"), "top_uy"), settlement(6.2, 1e4, 5e5), 0.02 * settlement(6.2, 1e4, 5e5));
-  EXPECT_LT(last(history("run"), "residual"), 0.02);
+  EXPECT_LT(last(history("run"), "residual"), 1e-3);
   EXPECT_LT(last(history("run"), "kinetic"), 1e-20);
+}
+
+/// What a scene of several stages has in a column of history.csv, from the beginning of the second one on.
+std::vector<Real> behind_the_first_stage(const HistoryTable& table, std::string_view column)
+{
+  const std::span<const Real> stage = table["stage"].value(), values = table[column].value();
+  return {values.begin() + (std::ranges::find(stage, 1) - stage.begin()), values.end()};
 }
 
 TEST_F(StaticStage, StaysAtRestInTheStageBehindIt)
@@ -57,11 +66,10 @@ TEST_F(StaticStage, StaysAtRestInTheStageBehindIt)
   const Outcome run = talus("run column.yaml --out run");
   ASSERT_EQ(run.code, 0) << run.err;
   const HistoryTable table = history("run");
-  EXPECT_LT(last(table, "kinetic"), 1e-5 * last(table, "gravity_work"));
-  const auto stage = table["stage"].value(), residual = table["residual"].value();
-  const auto begin = static_cast<std::size_t>(std::ranges::find(stage, 1) - stage.begin());
-  ASSERT_LT(begin, residual.size());
-  EXPECT_LT(residual[begin], 3e-3) << "1.2e-3; without the stress that particles keep 1.1e-2";
+  const std::vector<Real> residual = behind_the_first_stage(table, "residual"), kinetic = behind_the_first_stage(table, "kinetic");
+  ASSERT_GT(residual.size(), 10);
+  EXPECT_LT(std::ranges::max(residual), 1e-5) << "without the stress of empty cells 1e-3, without short increments at the end 3e-2";
+  EXPECT_LT(std::ranges::max(kinetic), 1e-12 * last(table, "gravity_work"));
 }
 
 /// A plate that is held at its left side and bends under its weight, on a mesh that its sides cut.  Small strains: the equations are linear.
@@ -90,15 +98,34 @@ TEST_F(StaticStage, LeavesABalanceFromWhichOtherRunsBegin)
 {
   write("plate.yaml", plate(plate_body, static_stage(2)));
   ASSERT_EQ(talus("run plate.yaml --out rest").code, 0);
-  write("on.yaml", plate("", "  - {type: run, duration: 0.02}\ninitial: {from: rest}\n"));
+  ASSERT_EQ(talus("run plate.yaml --out rest_of_three", launcher_of(3)).code, 0);
+  const std::string on = "  - {type: run, duration: 0.02}\ninitial: {from: ";
+  write("on.yaml", plate("", on + "rest}\n"));
+  write("on_of_three.yaml", plate("", on + "rest_of_three}\n"));
   ASSERT_EQ(talus("run on.yaml --out one").code, 0);
   ASSERT_EQ(talus("run on.yaml --out three", launcher_of(3)).code, 0);
   EXPECT_EQ(read("one/history.csv"), read("three/history.csv"));
-  const HistoryTable one = history("one");
+  ASSERT_EQ(talus("run on_of_three.yaml --out one_of_three").code, 0);
   const Real stored = last(history("rest"), "strain");
-  EXPECT_LT(std::ranges::max(one["kinetic"].value()), 1e-3 * stored);
-  EXPECT_LT(one["residual"].value()[1], 0.1) << "of the first step: 0.05; without the stress that particles keep 0.23";
-  EXPECT_LT(std::abs(last(one, "energy_defect")), 1e-2 * stored);
+  for (const char* run : {"one", "one_of_three"}) {
+    const HistoryTable table = history(run);
+    EXPECT_LT(std::ranges::max(table["kinetic"].value()), 1e-8 * stored) << run;
+    EXPECT_LT(std::ranges::max(table["residual"].value()), 1e-4) << run;
+    EXPECT_LT(std::abs(last(table, "energy_defect")), 1e-2 * stored) << run;
+  }
+}
+
+TEST_F(StaticStage, RefusesACheckpointWithCellsThatTheMeshDoesNotHave)
+{
+  write("plate.yaml", plate(plate_body, static_stage(1) + "  - {type: run, duration: 0.001}\n"));
+  ASSERT_EQ(talus("run plate.yaml --out run").code, 0);
+  const auto saved = files_in(folder_ / "run/checkpoints", ".h5");
+  ASSERT_FALSE(saved.empty());
+  const std::filesystem::path file = saved.back();
+  forge_value(file, "empty_cells/cell", 0, 1e6);
+  const Outcome on = talus("run --out on --resume '" + saved.back().string() + "'");
+  EXPECT_EQ(on.code, 3) << on.err;
+  EXPECT_NE(on.err.find("its cells without particles do not fit the scene"), on.err.npos) << on.err;
 }
 
 /// A beam of 5 m by 1.1 m with nu = 0, whose end goes down by four cells.  Its particles move into cells that were empty before, so
@@ -148,7 +175,7 @@ TEST_F(StaticStage, FindsTheSameInAnyNumberOfIncrements)
   ASSERT_EQ(talus("run many.yaml --out many").code, 0);
   const Real sag = -last(history("one"), "corner_uy");
   EXPECT_GT(sag, 1e-6);
-  EXPECT_NEAR(-last(history("many"), "corner_uy"), sag, 0.02 * sag);
+  EXPECT_NEAR(-last(history("many"), "corner_uy"), sag, 1e-3 * sag) << "where the stress of empty cells begins anew, 1.3 %";
 }
 
 /// A block of clay between rough plates, pressed beyond its limit load.
