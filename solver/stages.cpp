@@ -96,15 +96,19 @@ std::vector<Body> only_bodies(std::span<const Index> chosen, std::vector<Body> b
 template <int D>
 void begin_stage(Model<D>& m, const Stage& stage, Index number)
 {
-  m.state.stage = {.number = number,
-                   .first_step = m.state.clock.step,
-                   .damping = stage.damping,
-                   .begin = m.state.clock.time,
-                   .ramp_time = stage.ramp,
-                   .ramp_shape = stage.ramp_shape,
-                   .elastic = stage.elastic,
-                   .seeks_rest = stage.seeks_rest(),
-                   .flows = m.problem.flow.any() && stage.lets_water_flow()};
+  m.state.stage = {
+      .number = number,
+      .first_step = m.state.clock.step,
+      .damping = stage.damping,
+      .begin = m.state.clock.time,
+      // The loads are complete where the short increments begin.
+      .ramp_time = stage.ramp > 0 && stage.equilibrium
+                       ? stage.ramp - time_of_short_increments(m, *stage.equilibrium, stage.duration / stage.equilibrium->increments)
+                       : stage.ramp,
+      .ramp_shape = stage.ramp_shape,
+      .elastic = stage.elastic,
+      .seeks_rest = stage.seeks_rest(),
+      .flows = m.problem.flow.any() && stage.lets_water_flow()};
   m.state.solve = {};
   if (m.work.flow)
     m.work.flow->begin_stage();
@@ -301,12 +305,11 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
                           stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration,
                           why_not_at_rest(rest_conditions(m, stage), m.state.stage.balanced, steps_in_balance)));
   if (stage.equilibrium && m.state.residual > stage.equilibrium->most_unbalanced.value_or(std::numeric_limits<Real>::infinity()))
-    abort_run(
-        m, before, watch,
-        fmt::format("stage \"{}\"{} is not in equilibrium: unbalanced force {:.3g} of the loads, which only a stiffness of the solver "
-                    "holds, allowed {:.3g} (unbalanced); take more increments or smaller cells; else the soil carries less than the loads",
-                    stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", m.state.residual,
-                    *stage.equilibrium->most_unbalanced));
+    abort_run(m, before, watch,
+              fmt::format("stage \"{}\"{} is not in equilibrium: unbalanced force {:.3g} of the loads, which only the solver holds, "
+                          "allowed {:.3g} (unbalanced); take more increments or smaller cells; else the soil carries less than the loads",
+                          stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", m.state.residual,
+                          *stage.equilibrium->most_unbalanced));
   if (stage.residual)
     set_to_rest(m);
   if (stage.reset_displacement && !m.state.particles.x0.empty())

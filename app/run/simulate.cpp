@@ -295,6 +295,7 @@ class Simulation {
                     .after = imbalance(costs, part.subdomain.rank_of_whole_block, world().size())};
     const std::int64_t migrated = model_->work.migration.moved();
     State<D> state = std::move(model_->state);
+    state.empty_cells = state.empty_cells.of_all_ranks(world(), model_->problem.subdomain);
     model_.reset();
     Setup<D> setup = rest_;
     restrict_to(part.subdomain, setup);

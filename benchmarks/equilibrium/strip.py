@@ -108,10 +108,11 @@ def plan(level):
         groups[scene, size, increments, angle, kind] = (
             lambda group, size, _, angle, kind: judge(scene, group, size, angle, kind), changes(size, increments, extra or {}))
 
-    for scene in INCREMENTS:
-        for size in SIZES[level]:
-            add(scene, size, INCREMENTS[scene])
+    for size in SIZES[level]:
+        add("surcharge", size, INCREMENTS["surcharge"])
     if level == "full":
+        for size in SIZES[level]:
+            add("weight", size, INCREMENTS["weight"])
         for scene, count in INCREMENTS.items():
             add(scene, 0.25, 2 * count)
             add(scene, 0.25, count, 30, "plain volumes", PLAIN)

@@ -13,7 +13,7 @@ from .errors import Damaged, Missing, UnknownFormat
 from .packages import need
 from .tables import PURE
 
-CHECKPOINT_FORMATS = (4, 5, 6, 7, 8, 9, 10, 11, 12, 13)  # formats that Checkpoint reads
+CHECKPOINT_FORMATS = (4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14)  # formats that Checkpoint reads
 
 
 class Body(NamedTuple):

@@ -4,11 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/statics/without_remap.hpp"
 #include "solver/step/step_parts.hpp"
 
 namespace talus {
+
+/// Where Newton's method comes to a stand with so much of the loads out of balance or less, the increment is taken, and the next one balances the
+/// rest.  Differences of trials do not tell the derivative where soil begins to yield within them, which shorter increments make worse.
+constexpr Real near_balance = 1e-4;
 
 template <int D>
 LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt, bool keeps_jump_stress) : m_(m), dt_(dt), time_(m.state.clock.time)
@@ -231,10 +236,11 @@ Real LoadIncrement<D>::norm(std::span<const Real> f) const
 template <int D>
 bool LoadIncrement<D>::find_loads(std::span<Real> f)
 {
+  force_ = 1;
   if (!find_residual(std::vector<Real>(f.size(), 0), f))
     return false;
   std::vector<Real> loads(f.size());
-  loads_ = norm(f);
+  imbalance_ = loads_ = norm(f);
   for (const std::vector<Vec<D>>* all : {&reaction_, &weight_}) {
     for (std::size_t k = 0; k < unknowns_.node.size(); ++k)
       Eigen::Map<Vec<D>>(loads.data() + k * D) = (*all)[k];
@@ -249,7 +255,31 @@ std::optional<Real> LoadIncrement<D>::imbalance_at_start()
   std::vector<Real> f(unknowns_.size());
   const bool is_found = find_loads(f);
   restore();
-  return is_found ? std::optional(loads_ > 0 ? norm(f) / loads_ : 0) : std::nullopt;
+  return is_found ? std::optional(loads_ > 0 ? imbalance_ / loads_ : 0) : std::nullopt;
+}
+
+/// Newton's method, from x on.
+template <int D>
+NonlinearResult LoadIncrement<D>::iterate(NonlinearSolver& solver, int most_iterations, Real tolerance, std::span<Real> x)
+{
+  const NonlinearEquations equations{.unknowns = x.size(),
+                                     .block = D,
+                                     .residual = [this](std::span<const Real> at, std::span<Real> to) { return find_residual(at, to); },
+                                     .add_preconditioner = [this](const auto& add) { add_stiffness(add); },
+                                     .tolerance = tolerance,
+                                     .most_iterations = most_iterations};
+  return solver.solve(equations, x);
+}
+
+/// The displacements for which the ground would be in balance if it did not yield: from there on it is known where it does.  Without motion all
+/// that is about to yield is on the edge, where differences of trials are no derivative.
+template <int D>
+void LoadIncrement<D>::find_elastic_guess(NonlinearSolver& solver, int most_iterations, Real tolerance, std::span<Real> x)
+{
+  std::ranges::fill(x, 0);
+  const bool was = std::exchange(before_.stage.elastic, true);
+  iterate(solver, most_iterations, tolerance, x);
+  before_.stage.elastic = was;
 }
 
 template <int D>
@@ -269,27 +299,39 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, cons
   NonlinearResult result;
   result.converged = true;
   if (loads_ > 0) {
+    const Real tolerance_of_guess = std::max(options.residual, 0.01 * imbalance_ / loads_);
     force_ = loads_;
-    const NonlinearEquations equations{.unknowns = x.size(),
-                                       .block = D,
-                                       .residual = [this](std::span<const Real> at, std::span<Real> to) { return find_residual(at, to); },
-                                       .add_preconditioner = [this](const auto& add) { add_stiffness(add); },
-                                       .tolerance = options.residual,
-                                       .most_iterations = options.most_iterations};
-    result = solver.solve(equations, x);
+    result = iterate(solver, options.most_iterations, options.residual, x);
+    if (!result.converged && result.iterations < options.most_iterations && !before_.stage.elastic) {
+      find_elastic_guess(solver, options.most_iterations, tolerance_of_guess, x);
+      result = iterate(solver, options.most_iterations, options.residual, x);
+    }
   }
-  if (!result.converged) {
+  std::vector<Real> rest(x.size());
+  const bool is_near = !result.converged && find_residual(x, rest) && norm(rest) <= near_balance;
+  if (!result.converged && !is_near) {
+    without_solution_ = true;
     std::string why = fmt::format("{} after {} iterations, unbalanced force {:.3g} of the loads; {}", result.reason, result.iterations,
                                   result.norm, place_of_failure(x, f));
     restore();
     return why;
   }
+  const Real left = is_near ? norm(rest) : result.norm;
   accept(x);
   SolveLedger& solve = m_.state.solve;
-  solve.last_residual = result.norm;
+  solve.last_residual = left;
   solve.last_iterations = result.iterations, solve.last_linear_iterations = result.linear_iterations;
   solve.iterations += result.iterations, solve.linear_iterations += result.linear_iterations, solve.evaluations += evaluations_;
   return std::nullopt;
+}
+
+template <int D>
+void LoadIncrement<D>::skip()
+{
+  const Real left = loads_ > 0 ? imbalance_ / loads_ : 0;
+  accept(std::vector<Real>(unknowns_.size(), 0));
+  m_.state.solve.last_residual = left;
+  m_.state.solve.last_iterations = m_.state.solve.last_linear_iterations = 0;
 }
 
 /// Where the nodes move most, in words: there a mechanism begins.  Where none has moved, where the forces f [N] are least in balance.

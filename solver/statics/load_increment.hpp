@@ -34,8 +34,10 @@ class LoadIncrement {
   /// Nothing where it was solved: the model is then at its end, with its balances.  Otherwise why not, and the model as it was.
   /// Collective.
   std::optional<std::string> solve(NonlinearSolver& solver, const EquilibriumOptions& options);
-  /// Ends it without moving the particles.  Collective.
-  void skip() { accept(std::vector<Real>(unknowns_.size(), 0)); }
+  /// Whether solve() has failed because Newton's method found nothing, so that skip() is possible.
+  bool is_without_solution() const noexcept { return without_solution_; }
+  /// Ends it with particles where they are.  Collective.
+  void skip();
 
  private:
   enum class Then : std::uint8_t { forces, stay, locate };  ///< locate: stay, for the cells of the particles and their stress
@@ -52,6 +54,8 @@ class LoadIncrement {
   bool move(std::span<const Real> x, Then then);
   bool find_residual(std::span<const Real> x, std::span<Real> f);
   bool find_loads(std::span<Real> f);
+  NonlinearResult iterate(NonlinearSolver& solver, int most_iterations, Real tolerance, std::span<Real> x);
+  void find_elastic_guess(NonlinearSolver& solver, int most_iterations, Real tolerance, std::span<Real> x);
   void accept(std::span<const Real> x);
   /// Of the forces of jumps in the last trial those that pass with it.
   Vec<D> passing_jump(Index n) const noexcept { return jump_[to_size(n)] - jump_behind_[to_size(n)]; }
@@ -73,7 +77,7 @@ class LoadIncrement {
   Real dt_, time_;   ///< length and beginning [s]
   State<D> before_;  ///< at its beginning, the particles in their columns
   CellOrder order_;
-  bool sound_ = false;
+  bool sound_ = false, without_solution_ = false;
 
   Unknowns<D> unknowns_;
   ElasticStiffness<D> elastic_;
@@ -82,7 +86,7 @@ class LoadIncrement {
   std::vector<Vec<D>> jump_;         ///< by node: their forces in the last trial [N]
   std::vector<Vec<D>> jump_behind_;  ///< by node: those that steps behind it have [N]
   Real force_ = 1;                   ///< unit of residuals [N]
-  Real loads_ = 0;                   ///< size of the loads [N]
+  Real loads_ = 0, imbalance_ = 0;   ///< size of the loads, and what is out of balance where nothing moves [N]
   // Of each node with unknowns.
   std::vector<Mat<D>> free_;               ///< changes of displacement that its conditions leave free
   std::vector<Vec<D>> reaction_, weight_;  ///< in the last trial [N]

@@ -28,32 +28,60 @@ constexpr Real growth = 1.5;
 constexpr Real closing_share = 1.0 / 8192, balanced = 1e-3, shortest_share = closing_share / 256;
 
 template <int D>
-std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions& options, Real full, Real left)
+Real time_of_short_increments(const Model<D>& m, const EquilibriumOptions& options, Real full)
 {
-  const bool keeps = options.keeps_jump_stress && m.problem.columns.jump_stress;
-  const Real closing = keeps ? closing_share * full : 0;
-  const bool closes = keeps && left <= 1.01 * closing;  // what is left is a difference of times
-  const Real ahead = closes ? left : left - closing;
-  const Real wanted = m.state.solve.increment > 0 ? std::min(m.state.solve.increment, full) : full;
-  Real dt = ahead <= wanted * (1 + 1e-12) ? ahead : ahead < 2 * wanted ? ahead / 2 : wanted;  // no sliver at the end
-  if (!options.keeps_jump_stress)
-    drop_jump_stress(m);
-  if (closes && left > shortest_share * full)
+  const auto is_of_rates = [](const Material& material) { return material.viscosity || material.law().description().is_fluid; };
+  const bool has_jumps = options.keeps_jump_stress && m.problem.columns.jump_stress;
+  return has_jumps && std::ranges::none_of(m.state.materials, is_of_rates) ? closing_share * full : 0;
+}
+
+/// A short increment at the end, of which `left` [s] are left.  One that is not solved moves nothing; the stage says what is out of balance.
+template <int D>
+std::optional<std::string> make_short_increment(Model<D>& m, const EquilibriumOptions& options, Real full, Real left)
+{
+  Real dt = left;
+  if (left > shortest_share * full)
     if (LoadIncrement<D> all(m, left, true); all.is_sound() && all.imbalance_at_start().value_or(0) > balanced)
       dt = left / 2;
+  std::optional<std::string> why;
+  {
+    LoadIncrement<D> increment(m, dt, true);
+    if (!increment.is_sound())
+      return std::nullopt;
+    why = increment.solve(*m.problem.equations, options);
+    if (!why)
+      ++m.state.solve.increments;
+    if (!why || !increment.is_without_solution())
+      return why;
+  }
+  LoadIncrement<D> rest(m, left, true);
+  if (!rest.is_sound())
+    return std::nullopt;
+  if (!rest.imbalance_at_start())
+    return why;
+  rest.skip();
+  return std::nullopt;
+}
+
+template <int D>
+std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions& options, Real full, Real left)
+{
+  const Real closing = time_of_short_increments(m, options, full);
+  if (left <= 1.01 * closing)  // what is left is a difference of times
+    return make_short_increment(m, options, full, left);
+  const Real wanted = m.state.solve.increment > 0 ? std::min(m.state.solve.increment, full) : full;
+  Real dt = left <= wanted * (1 + 1e-12) ? left - closing : left < 2 * wanted ? left / 2 : wanted;  // no sliver at the end
+  if (!options.keeps_jump_stress)
+    drop_jump_stress(m);
   for (int cuts = 0;; ++cuts) {
     LoadIncrement<D> increment(m, dt, options.keeps_jump_stress);
     if (!increment.is_sound())
       return std::nullopt;
     const std::optional<std::string> why = increment.solve(*m.problem.equations, options);
     SolveLedger& solve = m.state.solve;
-    if (why && closes)
-      increment.skip();  // the stage says what is out of balance
-    if (!why || closes) {
+    if (!why) {
       ++solve.increments;
       solve.cuts += cuts;
-      if (closes)
-        return std::nullopt;
       solve.increment = std::max(dt, cuts > 0 ? dt : wanted);
       if (cuts == 0 && solve.last_iterations <= easy_iterations)
         solve.increment = std::min(full, growth * solve.increment);
@@ -66,6 +94,8 @@ std::optional<std::string> make_increment(Model<D>& m, const EquilibriumOptions&
   }
 }
 
+template Real time_of_short_increments(const Model<2>&, const EquilibriumOptions&, Real);
+template Real time_of_short_increments(const Model<3>&, const EquilibriumOptions&, Real);
 template std::optional<std::string> make_increment(Model<2>&, const EquilibriumOptions&, Real, Real);
 template std::optional<std::string> make_increment(Model<3>&, const EquilibriumOptions&, Real, Real);
 

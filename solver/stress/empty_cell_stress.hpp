@@ -2,8 +2,9 @@
 // Stress against jumps of gradients in cells that have no particles.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
-#include <span>
+#include <functional>
 #include <tuple>
 #include <vector>
 
@@ -15,7 +16,7 @@
 namespace talus {
 
 /// The stress q [Pa] of the cells beside the surface that have no particles, see JumpForces: it supports nodes beyond the surface.  A rank
-/// has the cells of its part, and perhaps others, which it does not use.
+/// has the cells of its part; what it may have of others is out of date.
 template <int D>
 class EmptyCellStress {
  public:
@@ -45,7 +46,7 @@ class EmptyCellStress {
         kept.add(cell_[i], stress_of(i));
     *this = std::move(kept);
   }
-  /// The cells of all ranks, on the root.  Collective.
+  /// The own cells of all ranks, on all ranks.  Collective.
   EmptyCellStress of_all_ranks(Communicator& ranks, const Subdomain& subdomain) const
   {
     if (subdomain.alone())
@@ -57,7 +58,7 @@ class EmptyCellStress {
         std::copy_n(stress_.data() + i * row.stress.size(), row.stress.size(), row.stress.begin());
       }
     std::vector<Row> all;
-    for (const std::vector<Row>& rows : gather_rows(ranks, std::span<const Row>(own)))
+    for (const std::vector<Row>& rows : exchange_rows(ranks, std::vector<std::vector<Row>>(to_size(ranks.size()), own)))
       all.insert(all.end(), rows.begin(), rows.end());
     std::ranges::sort(all, {}, &Row::cell);
     EmptyCellStress gathered;
@@ -66,10 +67,12 @@ class EmptyCellStress {
     return gathered;
   }
   /// Whether it can be that of a mesh with so many cells.
-  bool fits(std::int64_t cells) const noexcept
+  bool fits(std::int64_t cells) const
   {
-    return stress_.size() == cell_.size() * to_size(D * D) && std::ranges::is_sorted(cell_, std::ranges::less_equal{}) &&
-           (empty() || (cell_.front() >= 0 && cell_.back() < cells));
+    return stress_.size() == cell_.size() * to_size(D * D) &&
+           std::ranges::adjacent_find(cell_, std::ranges::greater_equal{}) == cell_.end() &&
+           (empty() || (cell_.front() >= 0 && cell_.back() < cells)) &&
+           std::ranges::all_of(stress_, [](Real one) { return std::isfinite(one); });
   }
   static constexpr auto fields() { return std::tuple{saved("cell", &EmptyCellStress::cell_), saved("stress", &EmptyCellStress::stress_)}; }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace talus::empty_cell_stress_test {
 namespace {
 
@@ -54,6 +56,9 @@ TEST(EmptyCellStress, RefusesCellsThatTheMeshDoesNotHave)
   EXPECT_FALSE(of_cells({-1, 7}).fits(8));
   EXPECT_FALSE(of_cells({4, 3}).fits(8));
   EXPECT_FALSE(of_cells({3, 3}).fits(8));
+  EmptyCellStress<2> broken;
+  broken.add(3, Mat<2>::Constant(std::numeric_limits<Real>::quiet_NaN()));
+  EXPECT_FALSE(broken.fits(8));
 }
 
 }  // namespace
