@@ -144,8 +144,10 @@ def at_end(run, data):
 
 def judge_footing(group, size, _):
     data, asked = group.data, size <= 0.5
-    return [*group.result("load over a c", "-", lambda run: capacity(run, data),
-                          *(("within", data["within"]) if asked else ("reported", None)), data["bearing capacity over strength"]),
+    load = ("within", data["within"]) if asked else ("reported", None)
+    return [*group.result("load over a c", "-", lambda run: capacity(run, data), *load, data["bearing capacity over strength"]),
+            *group.result("load over a c in the last row, where all is in balance", "-", lambda run: loads_of(run, data)[1][-1], *load,
+                          data["bearing capacity over strength"]),
             *group.result("slope over the last quarter over the first slope", "-", lambda run: slope(run, data),
                           *(("at most", data["largest slope"]) if asked else ("reported", None)), 0.0),
             *group.result("load of the last increment over that of the one before", "-", lambda run: at_end(run, data), "within",
