@@ -162,7 +162,8 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
     weight_[n] = nodes.active[n] ? sum.mass : 0;
     if (weight_[n] > 0)
       velocity_[n] = sum.momentum / sum.mass;
-    is_small_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0)) ? 1 : 0;
+    // In trials also nodes that particles do not reach any more: forces of the beginning of the increment are still given to them.
+    is_small_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0) || which == ActiveNodes::as_before) ? 1 : 0;
     if (is_small_[n] != 0)
       small_.push_back(node);
   });

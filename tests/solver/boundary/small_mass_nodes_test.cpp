@@ -1,6 +1,8 @@
 // Nodes with next to no mass.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "tests/solver/blocks_of_particles.hpp"
 
 namespace talus::testing::small_mass_nodes_test {
@@ -50,6 +52,35 @@ TEST(SmallMassNodes, HandOnEverythingTheyHoldAndMoveWithTheirHosts)
   small_mass_nodes.extrapolate(all_nodes(mesh), Kick{}, none_at_all, nodes, work);
   for (const auto& row : nodes.motion)
     EXPECT_LT((row.v - Vec<2>(3, -2)).norm() + (row.change - Vec<2>(0.5, 0)).norm(), 1e-14) << "a uniform motion stays one";
+}
+
+/// A force on a node that no particle reaches: in trials of an increment it goes to the nodes around, in steps there is none.
+TEST(SmallMassNodes, OfATrialAreThoseWithoutParticlesToo)
+{
+  const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
+  Nodes<2> nodes = nodes_of(mesh);
+  std::vector<Vec<2>> forces(nodes.sum.size(), Vec<2>::Zero());
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    if (const auto i = static_cast<std::size_t>(n); mesh.node(n)[0] > 0.1)
+      nodes.sum[i].mass = nodes.sum[i].lightest = 1;
+    else
+      forces[i] = Vec<2>(2, 1 + static_cast<Real>(n));
+  const Vec<2> all = std::accumulate(forces.begin(), forces.end(), Vec<2>(Vec<2>::Zero()));
+  ASSERT_GT(all.norm(), 1);
+  const auto of_active = [&](ActiveNodes which) {
+    SmallMassNodes<2> small_mass_nodes;
+    small_mass_nodes.lump(mesh, all_nodes(mesh), nodes, which);
+    std::vector<Vec<2>> given = forces;
+    small_mass_nodes.give(
+        all_nodes(mesh), [](Index, const Vec<2>& force) { return force; }, given);
+    Vec<2> sum = Vec<2>::Zero();
+    for (std::size_t i = 0; i < given.size(); ++i)
+      if (nodes.active[i])
+        sum += given[i];
+    return sum;
+  };
+  EXPECT_EQ(of_active(ActiveNodes::by_mass), Vec<2>(0, 0));
+  EXPECT_LT((of_active(ActiveNodes::as_before) - all).norm(), 1e-13);
 }
 
 /// A body that turns and is strained: the column of nodes of small mass, beside the others and not between them, moves with it.
