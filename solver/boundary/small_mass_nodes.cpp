@@ -162,8 +162,9 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
     weight_[n] = nodes.active[n] ? sum.mass : 0;
     if (weight_[n] > 0)
       velocity_[n] = sum.momentum / sum.mass;
-    // In trials also nodes that particles do not reach any more: forces of the beginning of the increment are still given to them.
-    is_small_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0) || which == ActiveNodes::as_before) ? 1 : 0;
+    // In trials also own nodes that particles do not reach any more: forces of the beginning of the increment are still given to them.
+    const bool is_of_trial = which == ActiveNodes::as_before && own.has(node);
+    is_small_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0) || is_of_trial) ? 1 : 0;
     if (is_small_[n] != 0)
       small_.push_back(node);
   });
