@@ -210,19 +210,16 @@ struct StaticSpec : StageChanges {
         std::tuple{
             optional("increments", &StaticSpec::increments, at_least(1), "-",
                      "in which the loads act; one that is not solved is cut in halves, and the next ones grow again"),
-            optional(
-                "residual", &StaticSpec::residual, positive, "-",
-                "an increment is solved when the unbalanced nodal forces are below this share of the loads; where no more can be found, "
-                "1e-4 is enough, and the next increment balances the rest"),
+            optional("residual", &StaticSpec::residual, positive, "-",
+                     "an increment is solved when the unbalanced nodal forces are below this share of the loads"),
             optional("iterations", &StaticSpec::iterations, at_least(1), "-", "most of Newton's method in an increment"),
             optional("cuts", &StaticSpec::cuts, within(0, 30), "-",
                      "how often an increment that is not solved is cut before the stage fails"),
             optional("unbalanced", &StaticSpec::unbalanced, positive, "-",
                      "the stage fails if at its end a larger share of the loads is out of balance for the steps behind it"),
             optional("keep_jump_stress", &StaticSpec::keep_jump_stress, any, "-",
-                     "whether particles and cells beside them keep the stress against displacements that the kernel does not see; false: "
-                     "it begins anew in each "
-                     "increment, so that ground which does not stand moves on in each"),
+                     "whether particles and empty cells beside them keep the stress against displacements that the kernel does not see; "
+                     "false: it begins anew in each increment, so that ground which does not stand moves on in each"),
             optional("grow", &StaticSpec::grow, any, "-",
                      "whether gravity and loads grow from zero; default true in the first stage if its bodies begin without "
                      "stress, else false: they "
@@ -249,18 +246,15 @@ struct QuasiStaticSpec : StageChanges {
   static constexpr auto fields()
   {
     return std::tuple_cat(
-        std::tuple{
-            required("duration", &QuasiStaticSpec::duration, positive, "s", "length of the stage"),
-            optional("increments", &QuasiStaticSpec::increments, at_least(1), "-",
-                     "into which it is divided; one that is not solved is cut in halves, and the next ones grow again"),
-            optional(
-                "residual", &QuasiStaticSpec::residual, positive, "-",
-                "an increment is solved when the unbalanced nodal forces are below this share of the loads; where no more can be found, "
-                "1e-4 is enough, and the next increment balances the rest"),
-            optional("iterations", &QuasiStaticSpec::iterations, at_least(1), "-", "most of Newton's method in an increment"),
-            optional("cuts", &QuasiStaticSpec::cuts, within(0, 30), "-",
-                     "how often an increment that is not solved is cut before the stage fails"),
-            optional("elastic", &QuasiStaticSpec::elastic, any, "-", "suspend yielding during the stage")},
+        std::tuple{required("duration", &QuasiStaticSpec::duration, positive, "s", "length of the stage"),
+                   optional("increments", &QuasiStaticSpec::increments, at_least(1), "-",
+                            "into which it is divided; one that is not solved is cut in halves, and the next ones grow again"),
+                   optional("residual", &QuasiStaticSpec::residual, positive, "-",
+                            "an increment is solved when the unbalanced nodal forces are below this share of the loads"),
+                   optional("iterations", &QuasiStaticSpec::iterations, at_least(1), "-", "most of Newton's method in an increment"),
+                   optional("cuts", &QuasiStaticSpec::cuts, within(0, 30), "-",
+                            "how often an increment that is not solved is cut before the stage fails"),
+                   optional("elastic", &QuasiStaticSpec::elastic, any, "-", "suspend yielding during the stage")},
         StageChanges::fields());
   }
 };

@@ -11,10 +11,6 @@
 
 namespace talus {
 
-/// Where Newton's method comes to a stand with so much of the loads out of balance or less, the increment is taken, and the next one balances the
-/// rest.  Differences of trials do not tell the derivative where soil begins to yield within them, which shorter increments make worse.
-constexpr Real near_balance = 1e-4;
-
 template <int D>
 LoadIncrement<D>::LoadIncrement(Model<D>& m, Real dt, bool keeps_jump_stress) : m_(m), dt_(dt), time_(m.state.clock.time)
 {
@@ -307,19 +303,16 @@ std::optional<std::string> LoadIncrement<D>::solve(NonlinearSolver& solver, cons
       result = iterate(solver, options.most_iterations, options.residual, x);
     }
   }
-  std::vector<Real> rest(x.size());
-  const bool is_near = !result.converged && find_residual(x, rest) && norm(rest) <= near_balance;
-  if (!result.converged && !is_near) {
+  if (!result.converged) {
     without_solution_ = true;
     std::string why = fmt::format("{} after {} iterations, unbalanced force {:.3g} of the loads; {}", result.reason, result.iterations,
                                   result.norm, place_of_failure(x, f));
     restore();
     return why;
   }
-  const Real left = is_near ? norm(rest) : result.norm;
   accept(x);
   SolveLedger& solve = m_.state.solve;
-  solve.last_residual = left;
+  solve.last_residual = result.norm;
   solve.last_iterations = result.iterations, solve.last_linear_iterations = result.linear_iterations;
   solve.iterations += result.iterations, solve.linear_iterations += result.linear_iterations, solve.evaluations += evaluations_;
   return std::nullopt;
